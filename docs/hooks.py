@@ -1,10 +1,11 @@
-"""What MkDocs puts into the pages: the parts of the reference that are written from the sources, formulas, and links to files beside the book.
+"""Hooks of MkDocs: they insert the parts of the reference that are generated from the sources,
+formulas, and links to files outside of the book.
 
 A page has a line for each part:
 
-- `<!-- commands -->`: what the installed program says of itself
+- `<!-- commands -->`: the help of the installed program
 - `<!-- file: PATH -->`: a file of the checkout
-- `<!-- fields: PATH TYPE -->`: the fields of a Rust type, as its source documents them
+- `<!-- fields: PATH TYPE -->`: the fields of a Rust type, with the documentation of its source
 """
 
 import os
@@ -24,7 +25,7 @@ ROOT = DOCS.parent
 
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
-    """The page as MkDocs is to see it."""
+    """The Markdown of a page, with all parts inserted."""
     text = re.sub(r"^<!-- commands -->$", lambda _: "\n".join(commands([])), markdown, flags=re.M)
     text = re.sub(r"^<!-- file: (\S+) -->$", lambda found: file(found[1]), text, flags=re.M)
     text = re.sub(r"^<!-- fields: (\S+) (\w+) -->$", lambda found: fields(found[1], found[2]), text, flags=re.M)
@@ -34,7 +35,7 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
 
 
 def link(found: "re.Match[str]", folder: Path, repository: str) -> str:
-    """A link to a file that is no part of the book leads to the repository."""
+    """A link. A link to a file outside of the book leads to the repository."""
     target = Path(os.path.normpath(folder / found[1]))
     if target.is_relative_to(DOCS) or not target.is_relative_to(ROOT):
         return found[0]
@@ -43,13 +44,13 @@ def link(found: "re.Match[str]", folder: Path, repository: str) -> str:
 
 
 def file(path: str) -> str:
-    """A file of the checkout, as a block."""
+    """A file of the checkout, as a code block."""
     text = (ROOT / path).read_text().rstrip()
     return f'```{Path(path).suffix[1:]} title="{path}"\n{text}\n```'
 
 
 def commands(words: list[str]) -> Iterator[str]:
-    """The program's help on a command, and on those below it."""
+    """The program's help for a command and its subcommands."""
     program = Path(sys.executable).with_name("twintac")
     asked = [str(program), "help", *words]
     said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
@@ -70,7 +71,7 @@ def commands(words: list[str]) -> Iterator[str]:
 
 
 def described(part: str) -> dict[str, str]:
-    """The names of a part of the help and what it says of each, on the same line or below."""
+    """The names in a part of the help, with their descriptions, on the same line or below."""
     rows: dict[str, str] = {}
     for line in part.splitlines():
         if begin := re.fullmatch(r" {2,6}(\S.*?)(?: {2,}(.*))?", line):
@@ -109,6 +110,7 @@ def fields(path: str, name: str) -> str:
 
 
 def renamed(attributes: str) -> str:
+    """The name in files that an attribute gives a field; empty if there is none."""
     found = re.search(r'rename = "(\w+)"', attributes)
     return found[1] if found else ""
 
@@ -122,7 +124,7 @@ TOML_TYPES = {"f64": "number", "f32": "number", "String": "text", "PathBuf": "pa
 
 
 def toml_type(rust: str, can_be_left_out: bool) -> str:
-    """What stands in a file for a Rust type."""
+    """The description of a Rust type in a TOML file."""
     if inner := re.fullmatch(r"Option<(.+)>", rust):
         return toml_type(inner[1], can_be_left_out=True)
     optional = ", optional" if can_be_left_out else ""
@@ -137,13 +139,13 @@ def toml_type(rust: str, can_be_left_out: bool) -> str:
 
 
 def markdown_of(doc: str) -> str:
-    """A doc comment without Rust's links between types."""
+    """A doc comment without Rust's links to types."""
     text = re.sub(r"\[`(?:\w+::)*(\w+)`\](?:\([^)]*\))?", r"`\1`", doc)
     return cell(text)
 
 
 def cell(text: str) -> str:
-    """Text in a table."""
+    """Text, escaped for a table."""
     return text.replace("|", "\\|").replace("[[", "&#91;&#91;").replace("<", "&lt;")
 
 
@@ -161,9 +163,12 @@ ALIASES = {
 
 
 class LibraryDocstrings(griffe.Extension):
-    """The compiled library's stubs as readers want them: with what the library says of itself where stubs say nothing, and types by names that are known elsewhere."""
+    """Improves the stubs of the compiled library: adds the library's docstrings where the stubs
+    have none, and replaces private names of types.
+    """
 
     def on_instance(self, *, obj: Any, **_: Any) -> None:
+        """Called by griffe for each object."""
         if obj.is_module or not str(obj.filepath).endswith("_twintac.pyi"):
             return
         parameters = obj.parameters if obj.is_function else []
@@ -179,7 +184,7 @@ class LibraryDocstrings(griffe.Extension):
 
 
 def of_library(path: str) -> str:
-    """What the compiled library says of a class or a member."""
+    """The docstring of a class or a member in the compiled library."""
     member: Any = import_module("twintac._twintac")
     for name in path.removeprefix("twintac._twintac.").split("."):
         member = getattr(member, name, None)

@@ -1,4 +1,4 @@
-//! What is built depends on the variables that name the chips.
+//! Rebuilds when the variables change that name the chips.
 
 fn main() {
     println!("cargo:rerun-if-env-changed=TWINTAC_CHIP");

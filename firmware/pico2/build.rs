@@ -1,4 +1,4 @@
-//! Puts the map of the memory where the linker looks for it.
+//! Copies the memory map to the place where the linker looks for it.
 
 use std::{env, fs, path::PathBuf};
 

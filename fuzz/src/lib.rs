@@ -1,6 +1,8 @@
-//! What all fuzz targets share: the call, and an allocator that refuses what no wire or file may ask for.
+//! The common part of all libFuzzer targets: the call of the check, and an allocator that aborts on
+//! allocations that no wire or file may cause.
 //!
-//! libFuzzer bounds the memory of the whole process, but sees single allocations only with a sanitizer, which stable compilers lack.
+//! The checks are in `crates/app/fuzz`. libFuzzer limits the memory of the whole process, but it
+//! sees single allocations only with a sanitizer, which stable compilers lack.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,11 +12,12 @@ pub use libfuzzer_sys;
 #[doc(hidden)]
 pub use twintac_fuzz::run;
 
-/// Most bytes of one allocation, and of all that live together. The largest input has 16 KiB.
+/// Most bytes of one allocation, and of all live allocations together. The largest input has 16
+/// KiB.
 const LARGEST: usize = 16 << 20;
 const MOST: usize = 64 << 20;
 
-/// The target of a name.
+/// Defines the fuzz target of this name.
 #[macro_export]
 macro_rules! fuzz {
     ($name:literal) => {
@@ -32,13 +35,13 @@ impl Bounded {
     fn take(size: usize) {
         let live = LIVE.fetch_add(size, Ordering::Relaxed) + size;
         if size > LARGEST || live > MOST {
-            // Nothing that would allocate: libFuzzer keeps the input of a process that aborts.
+            // Abort without allocating: libFuzzer keeps the input of a process that aborts.
             std::process::abort();
         }
     }
 }
 
-// SAFETY: all is handed on to the system's allocator.
+// SAFETY: every call is passed on to the system's allocator.
 unsafe impl GlobalAlloc for Bounded {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         Self::take(layout.size());

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Checks a folder that make.py wrote. Prints a table and writes check.json there; exit code 1 on a finding."""
+"""Checks a folder that make.py wrote. Prints a table and writes check.json to the folder; the exit
+code is 1 if a check fails.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ from mechanics.geometry import GeometryError
 
 
 def run(folder: Path) -> list[Row]:
-    """All checks. What needs solids is left out while a surface is not closed."""
+    """Makes all checks. Checks that need solids are left out if a surface is not closed."""
     made = files.read(folder)
     rows = meshes.check(made)
     if all(row.holds for row in rows if row.check.startswith(("closed", "turned"))):
@@ -26,7 +28,7 @@ def run(folder: Path) -> list[Row]:
 
 
 def main() -> int:
-    """Exit code 0: nothing found; 1: findings; 2: the folder can't be read."""
+    """Returns the exit code. 0: no check fails; 1: a check fails; 2: the folder cannot be read."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="folder that make.py wrote")
     arguments = parser.parse_args()

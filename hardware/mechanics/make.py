@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Makes a sensor's mechanics from its geometry.json: each part as STEP and STL, and mechanics.json."""
+"""Makes a sensor's mechanics from its geometry.json: STEP and STL files of each part, and
+mechanics.json.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from mechanics.manifest import manifest
 
 
 def main() -> int:
-    """Exit code 0: made; 2: the geometry can't be built, and the error says why."""
+    """Returns the exit code. 0: made; 2: the geometry cannot be built, for the printed reason."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("geometry", type=Path, help="geometry.json of a variant")
     parser.add_argument("--out", type=Path, required=True, help="folder to write to")

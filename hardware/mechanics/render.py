@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws pictures of a folder that make.py wrote, without a display.
 
-Parts, section, exploded view, and each step of building.
+The pictures show the parts, a section, an exploded view, and each step of building.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pictures.views import VIEWS
 
 
 def main() -> int:
-    """Exit code 0: drawn; 2: the folder can't be read, or there is no such picture."""
+    """Returns the exit code. 0: drawn; 2: the folder cannot be read, or a picture is unknown."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="folder that make.py wrote")
     parser.add_argument("--out", type=Path, help="folder for the pictures (default: the same)")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the casting sheet of a folder that make.py wrote.
 
-One page to lay beside the work, with weights, times and order.
+The sheet is one page with weights, times and the order of work.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pictures.views import VIEWS
 
 
 def main() -> int:
-    """Exit code 0: written; 2: the folder can't be read, or a number makes no sense."""
+    """Returns the exit code. 0: written; 2: the folder cannot be read, or a number is unusable."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="folder that make.py wrote")
     parser.add_argument("--out", type=Path, help="the PDF file (default: casting-sheet.pdf in the folder)")

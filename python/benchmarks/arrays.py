@@ -1,4 +1,5 @@
-"""How close the fast gel as arrays is to Rust's, and how fast: writes docs/benchmarks/arrays.json and arrays.md.
+"""Compares the surrogate of the gel as arrays with that of Rust, in accuracy and speed: writes
+docs/benchmarks/arrays.json and arrays.md.
 
 pip install './python[arrays]' torch 'jax[cpu]'
 python python/benchmarks/arrays.py
@@ -33,7 +34,9 @@ WITHIN = 1e-4
 
 
 class Library(NamedTuple):
-    """A library: its functions, an array of it, what compiles, and what waits for a result."""
+    """A library: its functions, an array, a compiler of functions, and a function that waits for a
+    result.
+    """
 
     xp: Any
     like: Any
@@ -42,7 +45,7 @@ class Library(NamedTuple):
 
 
 def libraries() -> dict[str, Library]:
-    """Those that are installed."""
+    """The installed libraries."""
     found = {"numpy": Library(np, np.zeros(1, np.float32), lambda f: f, lambda r: r)}
     try:
         import array_api_compat.torch as xp
@@ -61,24 +64,24 @@ def libraries() -> dict[str, Library]:
 
 
 def parts(drawn: Contacts) -> list[Contacts]:
-    """As many together as fit into a processor's memory."""
+    """The contacts in parts of at most `N_TOGETHER`, which fit into a processor's memory."""
     starts = range(0, len(drawn.number), N_TOGETHER)
     return [Contacts._make(value[start : start + N_TOGETHER] for value in drawn) for start in starts]
 
 
 def given(lib: Library, drawn: Contacts) -> tuple[Any, Any, Any]:
-    """Numbers of shapes, places and turns as arrays of a library."""
+    """Indices of shapes, positions and quaternions as arrays of a library."""
     pose = (lib.xp.asarray(value.astype(np.float32)) for value in (drawn.position_mm, drawn.quaternion))
     return lib.xp.asarray(drawn.number), *pose
 
 
 def read(gel: arrays.Gel, shapes: arrays.Shapes, number: Any, position_mm: Any, quaternion: Any) -> Any:
-    """From numbers of shapes and poses to a reading."""
+    """From indices of shapes and poses to a reading."""
     return arrays.read(gel, arrays.choose(shapes, number), position_mm, arrays.rotation_of(quaternion))
 
 
 def beside_rust(libs: dict[str, Library], n_contacts: int) -> dict[str, Any]:
-    """Contacts of one to three bodies of all shapes on each sensor."""
+    """Differences from Rust, for contacts of one to three bodies of all shapes on each sensor."""
     found: dict[str, Any] = {}
     own, rusts = zip(*simple(), *meshes())
     for sensor, load in SENSORS.items():
@@ -87,7 +90,7 @@ def beside_rust(libs: dict[str, Library], n_contacts: int) -> dict[str, Any]:
         drawn = [
             part for n_bodies in (1, 2, 3) for part in parts(contacts(gel, n_contacts // 3 + 1, n_bodies, len(own), n_bodies))
         ]
-        # Surfaces of triangles that are thin are another matter in Rust.
+        # Rust treats thin triangle meshes in another way.
         drawn = [_thick(part, len(simple())) for part in drawn]
         expected = [part.by_rust(fast, list(rusts)) for part in drawn]
         largest = [max(np.abs(both[place]).max() for both in expected) for place in (0, 1)]
@@ -114,13 +117,15 @@ def beside_rust(libs: dict[str, Library], n_contacts: int) -> dict[str, Any]:
 
 
 def _thick(drawn: Contacts, n_simple: int) -> Contacts:
-    """The contacts with surfaces of triangles upright, which then are thicker than deep."""
+    """The same contacts, with triangle meshes upright: they are then thicker than deep."""
     is_sampled = (drawn.number >= n_simple)[..., None]
     return drawn._replace(quaternion=np.where(is_sampled, [0.0, 0.0, 0.0, 1.0], drawn.quaternion))
 
 
 def slopes(libs: dict[str, Library], n_contacts: int) -> dict[str, Any]:
-    """Gradients in single precision along random ways, beside central differences in double precision."""
+    """Gradients in single precision along random directions, compared with central differences in
+    double precision.
+    """
     fast, own = FastGel.phystac(), [own for own, _ in simple()]
     shapes, exact = arrays.stack(own), arrays.load(fast, like=np.zeros(1))
     drawn = contacts(exact, n_contacts, 2, len(own), 9, depth_mm=3.0)
@@ -156,7 +161,7 @@ def slopes(libs: dict[str, Library], n_contacts: int) -> dict[str, Any]:
 
 
 def timed(call: Callable[[], Any], n_sensors: int) -> dict[str, float]:
-    """The best rate of several calls, and processor time a sensor, all threads together."""
+    """The best rate of several calls, and the processor time of a sensor, over all threads."""
     call()
     best_s, own_s, n_calls, started = np.inf, 0.0, 0, time.perf_counter()
     while n_calls < 2 or (time.perf_counter() - started < LEAST_S and n_calls < MOST_CALLS):
@@ -169,7 +174,7 @@ def timed(call: Callable[[], Any], n_sensors: int) -> dict[str, float]:
 
 
 def rates(libs: dict[str, Library]) -> dict[str, Any]:
-    """One body on each sensor, balls, boxes and cylinders, up to 2 mm deep."""
+    """Rates with one body on each sensor: balls, boxes and cylinders, up to 2 mm deep."""
     fast = FastGel.phystac()
     own, rusts = zip(*simple())
     shapes, gel = arrays.stack(own), arrays.load(fast)
@@ -189,7 +194,7 @@ def rates(libs: dict[str, Library]) -> dict[str, Any]:
 
 
 def page(results: dict[str, Any]) -> str:
-    """The figures for people."""
+    """The results as a Markdown page."""
     machine, rows = results["machine"], []
     for sensor, found in results["beside_rust"].items():
         for name in results["libraries"]:
@@ -205,12 +210,14 @@ def page(results: dict[str, Any]) -> str:
         f"{name}: {100 * own['within_2_percent']:.1f} %, {own['no_numbers']} that are no number" for name, own in results["slopes"].items()
     )
     versions = ", ".join(f"{name} {version}" for name, version in results["libraries"].items())
+    is_busy = machine["load_average"] > machine["processors"]
+    busy = "; other work made all rates lower" if is_busy else ""
     return "\n".join(
         [
-            "# The fast gel as arrays",
+            "# The surrogate of the gel as arrays",
             "",
             f"Made by `{results['command']}` on {machine['processor']}, {machine['processors']} processors, without a GPU (simulated data): {versions}. Load average at the end: "
-            f"{machine['load_average']:.1f}; other work made all rates lower. Rates on a GPU have not been measured.",
+            f"{machine['load_average']:.1f}{busy}. Rates on a GPU have not been measured.",
             "",
             f"Beside Rust's `FastBatch`, on {results['beside_rust']['phystac']['contacts']:,} random contacts of one to three bodies of all shapes: largest errors, and how many contacts differ by "
             f"more than {WITHIN:g} of the largest. Where Rust's readings jump, rounding decides on which side of the jump a contact is.",
@@ -232,7 +239,7 @@ def page(results: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Measures all, and writes."""
+    """Measures everything, and writes the results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--contacts", type=int, default=10_000, help="contacts of each sensor beside Rust's")
     n_contacts = parser.parse_args().contacts

@@ -1,4 +1,5 @@
-"""How many environment steps are made in a second: writes docs/benchmarks/tasks.json and tasks.md.
+"""Measures how many environment steps are made in a second: writes docs/benchmarks/tasks.json and
+tasks.md.
 
 pip install './python[rl]' mujoco
 python python/benchmarks/tasks.py
@@ -31,13 +32,15 @@ FEELS_KPA = 0.1
 
 
 def spread(rates: list[float]) -> dict[str, float]:
-    """The median, and between what the middle 80 % lie."""
+    """The median, and the range of the middle 80 %."""
     low, middle, high = np.percentile(rates, [10, 50, 90])
     return {"median": float(middle), "lowest_tenth": float(low), "highest_tenth": float(high)}
 
 
 def policy_of(kind: str) -> Policy:
-    """What keeps the sensors in touch: the script; where it takes longer than the environments, chance."""
+    """A policy that keeps the sensors in contact: the scripted baseline, or the random baseline
+    where the scripted one takes longer than the environments.
+    """
     return random_policy(kind) if kind == "ExploreShape" else scripted_policy(kind)
 
 
@@ -51,7 +54,7 @@ class Timed:
         self.touched: list[float] = []
 
     def step(self, counts: bool) -> None:
-        """One step, of which the rate counts or not."""
+        """Makes one step; `counts` says whether its rate counts."""
         actions = self.act(self.observed)
         started = time.perf_counter()
         self.observed, *_ = self.env.step(actions)
@@ -61,7 +64,9 @@ class Timed:
 
 
 def together() -> dict[str, dict[str, Any]]:
-    """Many environments in one call; all take turns, so that what else the machine does falls on all alike."""
+    """Many environments in one call. They are measured in turns, so that other load of the machine
+    affects all alike.
+    """
     timed = {}
     for kind in KINDS:
         for name, imperfection in ((kind, None), (f"{kind}, perfect sensors", twintac.Imperfection())):
@@ -83,7 +88,7 @@ def together() -> dict[str, dict[str, Any]]:
 
 
 def alone(kind: str) -> dict[str, float]:
-    """One environment by itself."""
+    """The rate of one environment."""
     env = gym.make(f"TwinTac/{kind}-v0")
     act = policy_of(kind)
     observed, _ = env.reset(seed=1)
@@ -99,7 +104,7 @@ def alone(kind: str) -> dict[str, float]:
 
 
 def touch_grid() -> dict[str, Any]:
-    """MuJoCo's touch sensor of eight cells, as many scenes on as many threads."""
+    """MuJoCo's touch sensor with eight cells, with as many scenes and threads."""
     script = ROOT / "crates/twin/sensors/examples/rate/touch_grid.py"
     asked = {"n_scenes": N_ENVIRONMENTS, "n_threads": N_THREADS, "n_steps": N_STEPS, "n_warm_up": N_WARM_UP}
     ran = subprocess.run([sys.executable, script, json.dumps(asked)], capture_output=True, text=True, check=False)
@@ -111,7 +116,7 @@ def touch_grid() -> dict[str, Any]:
 
 
 def page(results: dict[str, Any]) -> str:
-    """The figures for people."""
+    """The results as a Markdown page."""
 
     def row(name: str, rate: dict[str, float], touched: float | None) -> str:
         inside = f"{rate['lowest_tenth']:,.0f} to {rate['highest_tenth']:,.0f}"
@@ -151,7 +156,7 @@ def page(results: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Measures all, and writes."""
+    """Measures everything, and writes the results."""
     grid = touch_grid()
     if "n_cells" in grid:
         grid["cells"] = grid.pop("n_cells")

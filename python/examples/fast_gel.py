@@ -1,4 +1,4 @@
-"""Reads PhysTac's fast gel under a cube and a ball, some microseconds each."""
+"""Evaluates the surrogate of PhysTac's gel under a cube and a ball, some microseconds each."""
 
 from twintac import Body, FastGel, Pose, Shape
 

@@ -1,4 +1,6 @@
-"""Reads PhysTac's fast gel as a function of arrays: a ball and a cube on each of a thousand sensors."""
+"""Evaluates the surrogate of PhysTac's gel as a function of arrays: a ball and a cube on each of a
+thousand sensors.
+"""
 
 import numpy as np
 

@@ -1,4 +1,6 @@
-"""Finds from readings where a ball touches, how deep and how hard, and what it does to the gel's floor between the taxels."""
+"""Estimates from readings the location, depth and force of a ball, and the pressure that it causes
+at the base of the gel, also between the taxels.
+"""
 
 from twintac import Body, FastGel, Inverse, Pose, Shape
 

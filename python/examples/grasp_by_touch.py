@@ -1,11 +1,14 @@
 """Two fingers with a PhysTac each lift objects of unknown weight and shape, by touch alone.
 
-    python grasp_by_touch.py [--objects 20] [--seed 1] [--json] [--plot grasps.png] [--picture scene.png]
+    python grasp_by_touch.py [--objects 20] [--seed 1] [--json]
+        [--plot grasps.png] [--picture scene.png]
 
-What a finger knows is what its eight barometers read, and how far it has been moved. It presses lightly and is raised in small steps. While the object still
-stands, the gel is sheared, and the readings of the lower and the upper row part. Where they stop parting, the object hangs: how far they have parted tells its
-weight, and the fingers hold it with what friction needs and a third more, as far as they know. Beside it stands a gripper without touch, which takes every
-object with one force.
+The inputs of a finger are the readings of its eight barometers and the distance by which it was
+moved. The fingers press lightly and rise in small steps. While the object still stands, the gel is
+sheared, and the difference between the readings of the lower and the upper row grows. When the
+difference stops growing, the object hangs. Its weight is estimated from the difference, and the
+fingers hold it with the force that friction needs and a margin of a third, as far as the estimate
+is right. For comparison, a gripper without touch lifts every object with one force.
 """
 
 import argparse
@@ -23,20 +26,24 @@ Array = npt.NDArray[np.float64]
 
 FRICTION, GRAVITY_M_PER_S2 = 0.8, 9.81
 FIRST_N = 0.17  # a light touch
-MARGIN = 1.35  # of what friction needs
-FIXED_N = 3.0  # of the gripper without touch: lifts the heaviest
+MARGIN = 1.35  # a factor on the force that friction needs
+FIXED_N = 3.0  # of the gripper without touch; it lifts the heaviest object
 FIRST_RISE_MM, LIFT_MM = 0.03, 20.0
-RISE_N, RISE_PART = 0.025, 0.12  # that a step should load the gel with, and of what it carries already
+# Load that a step should add to the gel: a constant, and a fraction of the load that the gel
+# carries.
+RISE_N, RISE_PART = 0.025, 0.12
 APART_M = 0.06  # from the middle to each finger
-FRAMES = 12  # that are averaged, at 55 Hz
-# How much more the lower row reads than the upper one: how far the rows have parted.
+FRAMES = 12  # number of averaged frames, at 55 Hz
+# The lower row minus the upper row: the difference between the rows.
 PARTING = np.repeat([1.0, -1.0], 4)
-# Noise and steps of readings as they were found on the emulated bench.
+# Noise and resolution of readings on the emulated bench.
 SENSOR = Imperfection(noise_deviation_kpa=0.015, quantum_kpa=0.01, rate_hz=55.0)
 
 
 class Thing(NamedTuple):
-    """An object: `size_m` is that of a MuJoCo geom, from half the width between the fingers to half the height."""
+    """An object. `size_m` is the size of a MuJoCo geom, from half of the width between the fingers
+    to half of the height.
+    """
 
     kind: str
     size_m: tuple[float, ...]
@@ -54,7 +61,9 @@ def draw(number: int, rng: np.random.Generator) -> Thing:
 
 
 def features(readings_kpa: Array) -> Array:
-    """Products of readings over their sum, and over its power of 3/2. `[n, 72]`"""
+    """Products of readings, divided by the sum of the readings, and by the sum to the power of 3/2,
+    `[n, 72]`.
+    """
     total_kpa = np.maximum(readings_kpa.sum(1, keepdims=True), 0.2)
     i, j = np.triu_indices(readings_kpa.shape[1])
     products = readings_kpa[:, i] * readings_kpa[:, j] / total_kpa
@@ -62,11 +71,15 @@ def features(readings_kpa: Array) -> Array:
 
 
 class Meaning:
-    """The force on a finger, from what its sensor reads; and how far its rows part for each newton of shear: about 2.4 kPa under what is straight along the shear, 10
-    under a ball, which moves away from one row. Learned on 6000 sensors, pressed by boxes, balls and lying cylinders, sheared, and sheared a little more."""
+    """Estimates, from the readings of a sensor, the force on a finger, and the growth of the
+    difference between the rows for each newton of shear. This growth is about 2.4 kPa under objects
+    that are straight along the shear, and 10 kPa under a ball, which moves away from one row. The
+    estimates are trained on 6000 sensors that are pressed by boxes, balls and lying cylinders,
+    sheared, and sheared a little more.
+    """
 
     def __init__(self, rng: np.random.Generator) -> None:
-        shapes, rests = [], []  # a rest: the body's frame where it touches the gel's middle
+        shapes, rests = [], []  # a rest: the body's frame where it touches the middle of the gel
         for radius_mm in rng.uniform(10.0, 26.0, 30):
             shapes += [Shape.box((rng.uniform(8.0, 18.0), rng.uniform(40.0, 64.0), 20.0), 0.0), Shape.sphere(radius_mm), Shape.cylinder(radius_mm, 60.0, 0.0)]
             rests += [(0, 0, 0, 0, 0, 0, 1), (0, 0, 0, 0, 0, 0, 1), (0, -30, radius_mm, -np.sqrt(0.5), 0, 0, np.sqrt(0.5))]
@@ -84,7 +97,7 @@ class Meaning:
         after_kpa, after = (values.astype(float) for values in sensors.step(1.0, poses, shape, touch_id=shape))
         sticks = (wrench[:, 2] < -0.05) & (after[:, 1] > 0.9 * FRICTION * wrench[:, 2])
         readings_kpa, force_n, parting = readings_kpa[sticks], -wrench[sticks, 2], (after_kpa - readings_kpa)[sticks] @ PARTING
-        # Least squares of the relative error, with a light pull to zero.
+        # Least squares of the relative error, with weak regularization.
         weight = 1.0 / (0.05 + force_n)
         rows = features(readings_kpa) * weight[:, None]
         self.force = np.linalg.solve(rows.T @ rows + 1e-3 * np.eye(rows.shape[1]), rows.T @ (force_n * weight))
@@ -94,12 +107,15 @@ class Meaning:
         return np.maximum(features(readings_kpa) @ self.force, 0.03)
 
     def contact(self, readings_kpa: Array, kpa_per_mm: Array) -> Array:
-        """What tells a ball from what is straight: the force, how far the rows part for each mm of shear, and the inner columns' part of all readings. `[n, 3]`"""
+        """Features that distinguish a ball from straight objects: the force, the growth of the
+        difference between the rows for each mm of shear, and the fraction of the inner columns in
+        all readings, `[n, 3]`.
+        """
         inner = readings_kpa[:, [1, 2, 5, 6]].sum(1) / np.maximum(readings_kpa.sum(1), 0.2)
         return np.column_stack([np.log(self.force_n(readings_kpa)), np.log(np.maximum(kpa_per_mm, 0.1)), 8.0 * inner])
 
     def kpa_per_n(self, readings_kpa: Array, kpa_per_mm: float) -> float:
-        """The median of the 25 nearest lessons, for both fingers."""
+        """The median over the 25 nearest training contacts, for both fingers."""
         apart = self.contact(readings_kpa, np.full(2, kpa_per_mm))[:, None] - self.known
         nearest = np.argsort((apart**2).sum(-1), axis=1)[:, :25]
         return float(np.median(self.known_kpa_per_n[nearest]))
@@ -129,7 +145,7 @@ def scene(thing: Thing) -> mujoco.MjModel:
         </worldbody>
         <actuator><position joint="left" kp="4000"/><position joint="right" kp="4000"/><position joint="lift" kp="100000"/></actuator>
       </mujoco>""")
-    # The gels face each other, their x along the fingers' width, their y up.
+    # The gels face each other, with x along the fingers' width and y up.
     add_sensor(spec, Sensor.phystac(), body="left", name="left", quaternion=(0.5, 0.5, 0.5, 0.5))
     add_sensor(spec, Sensor.phystac(), body="right", name="right", quaternion=(0.5, -0.5, -0.5, 0.5))
     return spec.compile()
@@ -144,12 +160,15 @@ class Gripper:
         self.touch = TouchSensors(self.model, ["left", "right"], imperfection=SENSOR, friction=FRICTION, seed=seed)
         gap_m = APART_M - 1e-3 * float(Sensor.phystac().bounds_mm[1, 2]) - thing.size_m[0]
         self.closed_mm, self.risen_mm = 1e3 * gap_m - 1.0, 0.0
-        self.true_n, self.most_n = 0.0, 0.0  # the mean force of the fingers, now and at most: only the judge knows it
+        # The true mean force of the fingers, now and at most, for the evaluation only.
+        self.true_n, self.most_n = 0.0, 0.0
         self.data.joint("left").qpos[0] = self.data.joint("right").qpos[0] = 1e-3 * self.closed_mm
         self.step(0.1)
 
     def step(self, seconds: float, rise_mm: float = 0.0) -> Array:
-        """Goes on for a while, and rises evenly in the first half of it; returns the mean of each sensor's last readings, kPa, `[2, 8]`."""
+        """Makes steps for a time. The wrist rises evenly in the first half of it. Returns the mean
+        of each sensor's last readings, kPa, `[2, 8]`.
+        """
         readings_kpa, n_steps = [], round(seconds / self.model.opt.timestep)
         for number in range(n_steps):
             self.risen_mm += 2.0 * rise_mm / n_steps if 2 * number < n_steps else 0.0
@@ -164,7 +183,7 @@ class Gripper:
         return np.asarray(np.mean(readings_kpa[-FRAMES:], axis=0))
 
     def lift(self) -> bool:
-        """Rises, and returns whether the object came along."""
+        """Rises, and returns whether the object was lifted."""
         before_m = float(self.data.body("thing").xpos[2])
         self.step(4.0, LIFT_MM)
         return float(self.data.body("thing").xpos[2]) - before_m > 0.9e-3 * LIFT_MM
@@ -180,13 +199,16 @@ class Gripper:
 
 
 def grip(gripper: Gripper, meaning: Meaning, wanted_n: float) -> Array:
-    """Closes or opens the fingers until they feel this force; returns what they read."""
+    """Closes or opens the fingers until the estimated force is the wanted one; returns the
+    readings.
+    """
     readings_kpa = gripper.step(0.25)
     for _ in range(30):
         force_n = float(meaning.force_n(readings_kpa).mean())
         if abs(force_n / wanted_n - 1.0) < 0.04:
             break
-        gripper.closed_mm += float(np.clip(0.8 * (wanted_n - force_n) / (1.0 + force_n), -0.2, 0.2))  # no gel is stiffer, N/mm
+        # The divisor is the largest stiffness of a gel, N/mm.
+        gripper.closed_mm += float(np.clip(0.8 * (wanted_n - force_n) / (1.0 + force_n), -0.2, 0.2))
         readings_kpa = gripper.step(0.25)
     return readings_kpa
 
@@ -195,7 +217,8 @@ def lift_by_touch(gripper: Gripper, meaning: Meaning) -> bool:
     while gripper.step(0.04).max(axis=1).min() < 0.15:
         gripper.closed_mm += 0.03
     readings_kpa = grip(gripper, meaning, FIRST_N)
-    stood: list[float] = []  # how far the rows parted in each step of an object that stands, kPa/mm
+    # Growth of the difference between the rows in each step in which the object stands, kPa/mm.
+    stood: list[float] = []
     parted_kpa, carried_n, rise_mm, n_hung = 0.0, 0.0, FIRST_RISE_MM, 0
     while n_hung < 2 and gripper.risen_mm < LIFT_MM:
         before_kpa = readings_kpa
@@ -253,7 +276,8 @@ def main() -> None:
     grasps: list[dict[str, Any]] = []
     for number in range(asked.objects):
         thing = draw(number, rng)
-        needed_n = 0.5 * thing.mass_kg * GRAVITY_M_PER_S2 / FRICTION  # of each finger, below which it would slip
+        # force of each finger below which the object would slip
+        needed_n = 0.5 * thing.mass_kg * GRAVITY_M_PER_S2 / FRICTION
         touching, blind = Gripper(thing, asked.seed + number), Gripper(thing, asked.seed + number)
         found: dict[str, Any] = dict(kind=thing.kind, mass_g=round(1e3 * thing.mass_kg, 1), needed_n=round(needed_n, 3))
         found |= dict(lifted=lift_by_touch(touching, meaning), held_n=round(touching.true_n, 3), most_n=round(touching.most_n, 3))

@@ -1,4 +1,6 @@
-"""A thousand imperfect sensors under a thousand balls, each ball a little deeper at each step."""
+"""Steps a thousand imperfect sensors under a thousand balls, each ball a little deeper in each
+step.
+"""
 
 import numpy as np
 

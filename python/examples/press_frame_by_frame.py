@@ -1,4 +1,6 @@
-"""Presses a ball into PhysTac's gel and slides it aside, frame by frame, as a robot or a physics engine would."""
+"""Presses a ball into PhysTac's gel and moves it sideways, frame by frame, as a robot or a physics
+engine would.
+"""
 
 from twintac import Gel, Pose, Sensor
 

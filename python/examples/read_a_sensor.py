@@ -1,4 +1,8 @@
-"""Reads a PhysTac, here an emulated one; yours is `Reader.open("/dev/i2c-1", sensor, counts_per_pa=8)`, 8 being its counts per Pa."""
+"""Reads an emulated PhysTac.
+
+For a real one, use `Reader.open("/dev/i2c-1", sensor, counts_per_pa=8)`, where 8 is its number of
+counts per Pa.
+"""
 
 from twintac import Reader, Sensor
 

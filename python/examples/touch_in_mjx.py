@@ -1,4 +1,5 @@
-"""Sixteen blocks come to rest on the gels of sixteen palms, in MuJoCo XLA: on JAX's device, in compiled steps.
+"""Sixteen blocks come to rest on the gels of sixteen palms, in MuJoCo XLA: on JAX's device, in
+compiled steps.
 
 pip install './python[mujoco]' mujoco-mjx
 """

@@ -1,4 +1,7 @@
-"""Trains a twin on presses from a CSV file, and asks it for another. For yours: describe the sensor and how to read the file."""
+"""Trains a twin on presses from a CSV file, and computes another press with it.
+
+For your data, write a sensor description and an import description.
+"""
 
 from pathlib import Path
 

@@ -1,8 +1,10 @@
-"""A data set as tasks of HyperQueue on this machine, with its package for Python, which needs no `hq`.
+"""A data set as tasks of HyperQueue on this machine, with HyperQueue's Python package; the program
+`hq` is not needed.
 
     python python/scale/hyperqueue_dataset.py presses 64 --presses 10000 --fast
 
-The folder, the number of shards, and what `twintac dataset` takes. A task that fails is left to the next run: the same command again makes what is missing.
+The arguments are the folder, the number of shards, and options of `twintac dataset`. A failed task
+is not repeated in the same run; the same command again makes the missing shards.
 """
 
 import os
@@ -16,7 +18,7 @@ N_WORKERS = 2
 
 
 def main(folder: str, n_shards: int, options: list[str]) -> int:
-    """Makes all shards. Returns how many failed."""
+    """Makes all shards. Returns the number of failed ones."""
     twintac = str(Path(sys.executable).with_name("twintac"))
     logs = Path(folder).absolute().with_name(f"{Path(folder).name}.logs")
     logs.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,8 @@
-"""A data set by HyperQueue, whose workers are killed: the same bytes as those of one process.
+"""Tests that a data set by HyperQueue whose workers are killed has the same bytes as one by a
+single process.
 
-The package `hyperqueue` runs its server and its workers in one process, so all of them are killed at once; the same command goes on.
+The package `hyperqueue` runs its server and its workers in one process, so all of them are killed
+at once; the same command then continues.
 """
 
 import contextlib
@@ -17,7 +19,7 @@ from twintac import Dataset
 
 pytest.importorskip("hyperqueue")
 
-N_SHARDS = 24  # many are still to come when the third is made
+N_SHARDS = 24  # many are missing when the third is made
 N_PRESSES = 2400
 OPTIONS = ["--presses", str(N_PRESSES), "--fast"]
 PROGRAM = Path(__file__).with_name("hyperqueue_dataset.py")
@@ -29,7 +31,7 @@ def start(folder: Path) -> "subprocess.Popen[bytes]":
 
 
 def children(parent: int) -> list[int]:
-    """Processes below a process."""
+    """Child processes of a process."""
     found = []
     for folder in Path("/proc").glob("[0-9]*"):
         try:
@@ -48,12 +50,13 @@ def test_workers_that_are_killed_cost_nothing(tmp_path: Path, capsys: pytest.Cap
     until = time.monotonic() + 60
     tasks: list[int] = []
     while time.monotonic() < until:
-        tasks = children(running.pid)  # none between two tasks
+        tasks = children(running.pid)  # there is none between two tasks
         if tasks and len(list(folder.glob("shard-*.json"))) >= 3:
             break
         time.sleep(0.01)
     for process in (running.pid, *tasks):
-        with contextlib.suppress(ProcessLookupError):  # a task may end before its turn, or with its worker
+        # a task may end before its turn, or with its worker
+        with contextlib.suppress(ProcessLookupError):
             os.kill(process, signal.SIGKILL)
     running.wait()
     n_made = len(list(folder.glob("shard-*.json")))

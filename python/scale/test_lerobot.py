@@ -1,4 +1,6 @@
-"""The public package `lerobot` loads what is written for it, and a sample is the recording's frame."""
+"""Tests that the public package `lerobot` loads the data sets, and that a sample is the recording's
+frame.
+"""
 
 from pathlib import Path
 

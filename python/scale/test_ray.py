@@ -1,4 +1,6 @@
-"""A data set by a Ray cluster of two nodes, one of which is killed: the same bytes as those of one process."""
+"""Tests that a data set by a Ray cluster of two nodes, one of which is killed, has the same bytes
+as one by a single process.
+"""
 
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,7 @@ from twintac.ray import make_dataset
 
 ray = pytest.importorskip("ray")
 
-N_SHARDS = 16  # many are still to come when a node is killed
+N_SHARDS = 16  # many are missing when a node is killed
 OPTIONS: dict[str, Any] = {"n_presses": 1600, "fast": True}
 
 

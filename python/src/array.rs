@@ -1,9 +1,9 @@
-//! Arrays out.
+//! NumPy arrays as results.
 
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Numbers as `[n_rows, n_columns]`.
+/// Values as an array `[n_rows, n_columns]`.
 pub(crate) fn rows<T: Element>(
     py: Python<'_>,
     numbers: Vec<T>,
@@ -12,7 +12,7 @@ pub(crate) fn rows<T: Element>(
     PyArray1::from_vec(py, numbers).reshape(shape)
 }
 
-/// Rows of one length as `[n_rows, n_columns]`.
+/// Rows of equal length as an array `[n_rows, n_columns]`.
 pub(crate) fn of_rows<'py, T: Element + Copy>(
     py: Python<'py>,
     all: &[Vec<T>],

@@ -1,4 +1,4 @@
-//! Recordings for whatever reads Arrow.
+//! Recordings for libraries that read Arrow.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use arrow_array::{
 use arrow_schema::{ArrowError, Field, Schema};
 use twintac::{Column, Recording};
 
-/// The name that the Arrow PyCapsule interface gives to streams.
+/// The name of a stream's capsule in the Arrow PyCapsule interface.
 pub(crate) const STREAM: &std::ffi::CStr = c"arrow_array_stream";
 
-/// The columns of a recording as a stream of one batch, which has a copy of its numbers.
+/// The columns of a recording as a stream of one batch. The batch has a copy of the numbers.
 pub(crate) fn stream(recording: &Recording) -> Result<FFI_ArrowArrayStream, ArrowError> {
     let (mut fields, mut arrays) = (Vec::new(), Vec::new());
     for (name, column) in recording.columns() {

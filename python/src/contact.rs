@@ -1,4 +1,4 @@
-//! What touches.
+//! Estimated contacts.
 
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -11,17 +11,17 @@ use pyo3::prelude::*;
 use crate::array::rows;
 use crate::pickle::{Kept, Reduced, reduced};
 
-/// An inverse, as what it has found knows it.
+/// Identifies the inverse that found a contact.
 #[derive(Clone)]
 pub(crate) struct Origin {
-    /// Tells it from the others, in all processes.
+    /// A number that differs between inverses, in all processes.
     number: u64,
-    /// Names of its shapes, which are in memory once.
+    /// Names of its shapes, shared in memory.
     pub(crate) shapes: Arc<[String]>,
 }
 
 impl Origin {
-    /// A new one.
+    /// A new identity.
     pub(crate) fn of(shapes: Arc<[String]>) -> Self {
         let mut hasher = RandomState::new().build_hasher();
         hasher.write_u32(std::process::id());
@@ -33,32 +33,34 @@ impl Origin {
         }
     }
 
-    /// Whether both are of one inverse.
+    /// Whether both belong to the same inverse.
     pub(crate) fn is(&self, other: &Self) -> bool {
         self.number == other.number
     }
 }
 
-/// What touches, with how sure that is: what `Tracker.update` returns. Deviations are standard deviations. An inverse by tables may not know the force: it is 0 then.
+/// The estimated contact, with its uncertainty: the result of `Tracker.update`. Deviations are
+/// standard deviations. An inverse of tables (`Inverse.of_tables`) may not know the force, which is
+/// 0 then.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Contact {
     pub(crate) contact: twintac::Contact,
-    /// Of the inverse that has found it.
+    /// The inverse that found it.
     pub(crate) origin: Origin,
-    /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
+    /// Provenance of the readings: `"real"`, `"emulated"` or `"simulated"`.
     #[pyo3(get)]
     pub(crate) provenance: String,
 }
 
 #[pymethods]
 impl Contact {
-    /// Name of the most probable shape, of which the rest is said.
+    /// Name of the most probable shape. The other properties describe the contact of this shape.
     #[getter]
     fn shape(&self) -> &str {
         &self.origin.shapes[self.contact.shape]
     }
 
-    /// How probable each of the known shapes is; they sum up to 1.
+    /// Probability of each known shape, by name. The sum is 1.
     #[getter]
     fn shape_probabilities(&self) -> BTreeMap<&str, f64> {
         let names = self.origin.shapes.iter().map(String::as_str);
@@ -67,7 +69,7 @@ impl Contact {
             .collect()
     }
 
-    /// Place of the shape's origin in the gel's plane, x and y, mm.
+    /// Location of the shape's origin in the gel's plane: x and y, mm.
     #[getter]
     fn place_mm(&self) -> (f64, f64) {
         self.contact.place_mm.into()
@@ -79,7 +81,8 @@ impl Contact {
         self.contact.depth_mm
     }
 
-    /// Turn about the vertical, radians, up to what makes no difference to the shape; 0 for a round one.
+    /// Yaw (rotation about the vertical axis), radians, modulo the symmetry of the shape; 0 for a
+    /// round shape.
     #[getter]
     fn spin_rad(&self) -> f64 {
         self.contact.spin_rad
@@ -91,43 +94,44 @@ impl Contact {
         self.contact.force_n
     }
 
-    /// Deviation of the place along x and along y, mm.
+    /// Standard deviation of the location along x and along y, mm.
     #[getter]
     fn place_deviation_mm(&self) -> (f64, f64) {
         self.contact.place_deviation_mm.into()
     }
 
-    /// Deviation of the depth, mm.
+    /// Standard deviation of the depth, mm.
     #[getter]
     fn depth_deviation_mm(&self) -> f64 {
         self.contact.depth_deviation_mm
     }
 
-    /// Deviation of the spin, radians; 0 for a round shape.
+    /// Standard deviation of the yaw, radians; 0 for a round shape.
     #[getter]
     fn spin_deviation_rad(&self) -> f64 {
         self.contact.spin_deviation_rad
     }
 
-    /// Deviation of the force, N.
+    /// Standard deviation of the force, N.
     #[getter]
     fn force_deviation_n(&self) -> f64 {
         self.contact.force_deviation_n
     }
 
-    /// Covariance of x, y and depth, mm, and spin, radians; `[4, 4]`.
+    /// Covariance of x, y and depth, mm, and yaw, radians, in this order; `[4, 4]`.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         rows(py, self.contact.covariance.as_flattened().to_vec(), [4, 4])
     }
 
-    /// What the shape leaves of the readings, in deviations of a frame by itself: far above 1, something else touches.
+    /// Root mean square of the residuals of the readings, in standard deviations of a single frame.
+    /// If it is far above 1, something else touches the gel.
     #[getter]
     fn misfit(&self) -> f64 {
         self.contact.misfit
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

@@ -16,25 +16,40 @@ use crate::settings::to_python;
 /// Most presses of a data set.
 const MOST_PRESSES: usize = 100_000_000;
 
-/// Many simulated presses, made in shards by as many processes and machines as there are. A press depends on the seed and on its own name alone: however the data set
-/// is divided, its shards merge to the same bytes.
+/// Many simulated presses, made in shards by any number of processes and machines. A press depends
+/// only on the seed and on its own name. The merged file therefore has the same bytes for every
+/// division into shards.
 ///
-/// Presses are those of a protocol (TOML), or `n_presses` at random with the `indenters` named (all, if none is), 1000 unless it is said. The gel is solved, or a fast one:
-/// PhysTac's (`fast=True`) or that of a file. Readings are the pressures at the ports, or those of the twin in a folder. `imperfection` (TOML, with `fast`) gives each press an
-/// imperfect sensor of its own. `settings` (TOML) may have a table `[simulate]`. Without a `sensor` (TOML), that of the twin is taken, or PhysTac.
+/// - `sensor`: path of the sensor description (TOML); unless given, the sensor of the twin, or
+///   PhysTac without a twin.
+/// - `protocol`: path of the press protocol (TOML); random presses unless given.
+/// - `indenters`: names of the indenters of random presses; all indenters of the sensor unless
+///   given. A protocol names its own.
+/// - `n_presses`: number of presses; unless given, 1000 random presses, rounded up to the same
+///   number for each indenter, or all presses of the protocol.
+/// - `seed`: seed of all random choices.
+/// - `fast`: the surrogate of the gel: `True` for the built-in one of PhysTac or of its fingertip,
+///   or the path of a file. Without it, the gel is computed with finite elements.
+/// - `twin`: folder of the twin that computes the readings; unless given, readings are the
+///   pressures at the ports.
+/// - `imperfection`: path of the sensor variation (TOML), from which each press gets an imperfect
+///   sensor of its own. It needs `fast`.
+/// - `settings`: path of a file (TOML) that may have a table `[simulate]` with settings of the
+///   simulation; not together with `twin`.
 ///
-/// Raises `Error` with file, line and field if a file is wrong, and for arguments that do not go together.
+/// Raises `Error` with file, line and field if a file is wrong, and for arguments that do not go
+/// together.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Dataset {
     dataset: Arc<twintac::Dataset>,
 }
 
-/// Which fast gel.
+/// Which surrogate (fast gel).
 #[derive(FromPyObject)]
 pub(crate) enum Fast {
-    /// PhysTac's, or none.
+    /// The built-in one of PhysTac, or none.
     Chosen(bool),
-    /// That of a file.
+    /// The surrogate in a file.
     File(PathBuf),
 }
 
@@ -86,22 +101,31 @@ impl Dataset {
         })
     }
 
-    /// How many presses it has.
+    /// Number of presses.
     #[getter]
     fn n_presses(&self) -> usize {
         self.dataset.n_presses()
     }
 
-    /// What it is made from: the text of `dataset.toml`. Data sets of the same text are the same.
+    /// The text of `dataset.toml`: the inputs of the data set. Data sets with the same text are the
+    /// same.
     #[getter]
     fn identity(&self) -> &str {
         self.dataset.identity()
     }
 
-    /// Makes shard `shard` of `of`, counted from 1, in a folder, unless it is complete there. It appears whole or not at all. Returns its manifest, and the paths `parquet` and
-    /// `manifest_file`. Ctrl-C ends it before its next press.
+    /// Makes one shard in a folder, unless it is complete there. The shard appears whole or not at
+    /// all. Ctrl-C ends the call before the next press.
     ///
-    /// Raises `Error` for a folder that holds another data set or another division, and for a shard that is not from 1 to `of`.
+    /// - `folder`: path of the folder.
+    /// - `shard`: number of the shard, from 1 to `of`.
+    /// - `of`: number of shards.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// Returns the manifest of the shard, with the paths `parquet` and `manifest_file`.
+    ///
+    /// Raises `Error` for a folder that holds another data set or another division into shards, and
+    /// for a shard that is not from 1 to `of`.
     #[pyo3(signature = (folder, shard=None, of=None, *, progress=None), text_signature = "($self, folder, shard=1, of=1, *, progress=None)")]
     fn make<'py>(
         &self,
@@ -122,7 +146,12 @@ impl Dataset {
         to_python(py, &made.or_raise(py)?)
     }
 
-    /// Checks that all shards of a folder are there and as they were made. Returns counts of shards, presses and frames, and the presses that were left out.
+    /// Checks that all shards in a folder are complete and unchanged.
+    ///
+    /// - `folder`: path of the folder.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// Returns the numbers of shards, presses and frames, and the presses that were left out.
     ///
     /// Raises `Error` that names the shard that is missing or differs.
     #[staticmethod]
@@ -138,7 +167,13 @@ impl Dataset {
         to_python(py, &whole.or_raise(py)?)
     }
 
-    /// Does what `check` does, and writes all presses as one recording: `presses.parquet` in the folder, or another file. Returns what `check` returns.
+    /// Checks all shards as `check` does, and writes all presses as one recording.
+    ///
+    /// - `folder`: path of the folder.
+    /// - `file`: path of the recording; `presses.parquet` in the folder unless given.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// Returns what `check` returns.
     ///
     /// Raises `Error` as `check` does, and for a file that cannot be written.
     #[staticmethod]
@@ -155,7 +190,7 @@ impl Dataset {
         to_python(py, &whole.or_raise(py)?)
     }
 
-    /// What is made of files is no value.
+    /// Raises `TypeError`: a `Dataset` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "Dataset",

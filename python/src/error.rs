@@ -8,9 +8,9 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 use twintac::ErrorPlace;
 
-/// What came, or the exception `twintac.Error` with the whole text of the error.
+/// Converts an error to the exception `twintac.Error`, with the whole text of the error.
 pub(crate) trait OrRaise<T> {
-    /// Raises the error.
+    /// Returns the value, or raises the error.
     fn or_raise(self, py: Python<'_>) -> PyResult<T>;
 }
 
@@ -23,7 +23,7 @@ impl<T, E: Into<twintac::Error>> OrRaise<T> for Result<T, E> {
     }
 }
 
-/// A file that cannot be read.
+/// The exception for a file that cannot be read.
 pub(crate) fn unreadable(py: Python<'_>, path: &Path, error: &dyn Error) -> PyErr {
     let place = ErrorPlace {
         file: Some(path.display().to_string()),
@@ -36,7 +36,7 @@ pub(crate) fn unreadable(py: Python<'_>, path: &Path, error: &dyn Error) -> PyEr
     )
 }
 
-/// An argument that cannot be used.
+/// The exception for an argument that cannot be used.
 pub(crate) fn unusable(py: Python<'_>, field: &str, problem: &str) -> PyErr {
     let place = ErrorPlace {
         field: Some(field.to_owned()),
@@ -53,7 +53,7 @@ fn exception(py: Python<'_>, text: &str, place: ErrorPlace) -> PyErr {
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
-/// The text of an error and of what is behind it.
+/// The text of an error and of its sources.
 fn whole_text(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut behind = error.source();

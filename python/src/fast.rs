@@ -1,4 +1,4 @@
-//! The gel without finite elements.
+//! The surrogate of a gel (the gel without finite elements).
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,24 +18,27 @@ use crate::shape::Body;
 use crate::shared::Shared;
 use crate::touches::{Touches, bodies};
 
-/// What every reading of a fast gel is.
+/// Provenance of every reading of a surrogate.
 pub(crate) const PROVENANCE: &str = "simulated";
 
 /// Most ports of a gel.
 const MOST_PORTS: usize = 1_000_000;
 
-/// By how much a port may be beside the floor, mm.
+/// Largest accepted distance of a port from the base of the gel, mm.
 const ROUNDING_MM: f64 = 1e-6;
 
-/// Most pressures of one call, which take a gigabyte.
+/// Most pressures of one call; they take a gigabyte.
 const MOST_PRESSURES: usize = 250_000_000;
 
 /// Pressures at the ports and wrenches of many sensors.
 pub(crate) type Answers<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 
-/// A sensor's gel without finite elements: microseconds a reading, of bodies of any shape.
+/// The surrogate of a sensor's gel: neural networks instead of finite elements. A reading takes
+/// microseconds. The gel may be touched by bodies of any shape.
 ///
-/// `FastGel.phystac()` and `FastGel.phystac_tip()` are built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
+/// `FastGel.phystac()` and `FastGel.phystac_tip()` are built in. `twintac fast train` makes the
+/// surrogate of another sensor, and `FastGel.load` reads it. A surrogate has no viscoelastic
+/// relaxation. It has no friction either, which `Friction` adds.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct FastGel {
@@ -44,23 +47,23 @@ pub(crate) struct FastGel {
 
 #[pymethods]
 impl FastGel {
-    /// The fast gel of PhysTac, which is built in.
+    /// The surrogate of PhysTac's gel, which is built in.
     #[staticmethod]
     fn phystac(py: Python<'_>) -> PyResult<Self> {
         let gel = py.detach(twintac::FastGel::phystac).or_raise(py)?;
         Ok(Self { gel: Arc::new(gel) })
     }
 
-    /// The fast gel of PhysTac's fingertip, which is built in.
+    /// The surrogate of the gel of PhysTac's fingertip, which is built in.
     #[staticmethod]
     fn phystac_tip(py: Python<'_>) -> PyResult<Self> {
         let gel = py.detach(twintac::FastGel::phystac_tip).or_raise(py)?;
         Ok(Self { gel: Arc::new(gel) })
     }
 
-    /// Reads a file that `twintac fast train` has made.
+    /// Reads a surrogate from a file that `twintac fast train` has made.
     ///
-    /// Raises `Error` with the file if it is none, or cannot be read.
+    /// Raises `Error` with the file if it is not a surrogate, or cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let bytes = std::fs::read(&path).map_err(|error| unreadable(py, &path, &error))?;
@@ -69,27 +72,28 @@ impl FastGel {
         Ok(Self { gel: Arc::new(gel) })
     }
 
-    /// The gel as the bytes of a file that `load` reads: `Path("gel.safetensors").write_bytes(gel.to_bytes())`.
+    /// The surrogate as the bytes of a file that `load` reads:
+    /// `Path("gel.safetensors").write_bytes(gel.to_bytes())`.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| self.gel.to_bytes()).or_raise(py)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Name of the sensor whose gel it is.
+    /// Name of the sensor that the surrogate was trained for.
     #[getter]
     fn sensor(&self) -> &str {
         self.gel.sensor()
     }
 
-    /// Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
-    /// Names do not count, nor do indenters, limits and the read-out.
+    /// Checks that this is the surrogate of a sensor's gel: shape, material, shell and ports must
+    /// be the same. Names, indenters, limits, the read-out, relaxation and friction may differ.
     ///
-    /// Raises `Error`, which says all that differs.
+    /// Raises `Error` for another gel. The message says all that differs.
     fn check(&self, py: Python<'_>, sensor: &Sensor) -> PyResult<()> {
         self.gel.check(&sensor.sensor.file().sensor).or_raise(py)
     }
 
-    /// Where the ports are in the gel's plane, mm; `[n_taxels, 2]`.
+    /// Locations of the ports in the gel's plane, mm; `[n_taxels, 2]`.
     #[getter]
     fn ports_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let ports = self.gel.ports_mm();
@@ -100,9 +104,13 @@ impl FastGel {
         )
     }
 
-    /// The same gel with its ports at other places of the floor, x and y, mm, `[n_ports, 2]`: finer than taxels are.
+    /// The same surrogate with its ports at other locations, for example closer together than the
+    /// taxels.
     ///
-    /// Raises `Error` for an array of another shape, no place, more than a million, and a place that is not on the gel's floor.
+    /// - `places_mm`: locations on the base of the gel, x and y, mm; `[n_ports, 2]`.
+    ///
+    /// Raises `Error` for an array of another shape, for no location or more than a million, and
+    /// for a location that is not on the base of the gel.
     fn with_ports(&self, py: Python<'_>, places_mm: Given<'_>) -> PyResult<Self> {
         let [low, high] = self.gel.bounds_mm();
         let expected = format!(
@@ -128,7 +136,7 @@ impl FastGel {
         })
     }
 
-    /// Prepares one sensor to be read. Each thread needs a reader of its own.
+    /// Returns a reader for one sensor. Each thread needs its own reader.
     fn reader(&self, py: Python<'_>) -> FastReader {
         let reader = py.detach(|| self.gel.reader());
         FastReader {
@@ -137,9 +145,12 @@ impl FastGel {
         }
     }
 
-    /// Prepares many sensors to be read in one call, which these bodies touch. It uses all cores, or `n_threads`.
+    /// Returns a reader for many sensors in one call.
     ///
-    /// Raises `Error` if there is no body, and for a number of threads that is not from 1 to 1024.
+    /// - `bodies`: the bodies that may touch the sensors, at least one.
+    /// - `n_threads`: number of threads, 1 to 1024; as many as there are cores unless given.
+    ///
+    /// Raises `Error` if there is no body, and for a number of threads out of this range.
     #[pyo3(signature = (bodies, n_threads=None))]
     fn batch(&self, py: Python<'_>, bodies: Vec<Body>, n_threads: Option<Given<'_>>) -> PyResult<FastBatch> {
         let bodies = self::bodies(py, bodies)?;
@@ -152,7 +163,7 @@ impl FastGel {
         })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -180,7 +191,7 @@ impl Kept for FastGel {
     }
 }
 
-/// A fast gel of one sensor, ready to be read: what `FastGel.reader` returns.
+/// Evaluates the surrogate for one sensor. `FastGel.reader` returns it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct FastReader {
     reader: Shared<twintac::FastReader>,
@@ -189,28 +200,35 @@ pub(crate) struct FastReader {
 
 #[pymethods]
 impl FastReader {
-    /// What every reading is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// What the gel does under bodies at these poses in its frame (`gel_from_body`). Returns the pressure at each port, kPa, `[n_taxels]`; and force on the gel, N,
-    /// and torque about the top of its middle, N mm, `[6]`.
+    /// Computes the pressures at the ports, and force and torque on the gel, under bodies.
+    ///
+    /// - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
+    ///
+    /// Returns the pressure at each port, kPa, `[n_taxels]`, and the wrench, `[6]`: force on the
+    /// gel, N, and torque about the centre of the gel's top, N mm.
     fn read<'py>(&self, py: Python<'py>, bodies: Vec<(Body, Pose)>) -> PyResult<Reading<'py>> {
         self.answer(py, |reader, pressure_kpa, wrench| {
             reader.read(&placed(&bodies), pressure_kpa, wrench);
         })
     }
 
-    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
-    /// above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
-    /// pressed, or too few pressed there.
+    /// The out-of-distribution (OOD) score of a contact, without unit. It is 0 if nothing is near
+    /// the gel. Above 1, readings and force may be wrong: the shape is unlike those of the training
+    /// set, the contact is deeper than the training presses, or too few training presses were
+    /// there.
+    ///
+    /// - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
     fn novelty(&self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> PyResult<f32> {
         self.reader.work(py, |reader| reader.novelty(&placed(&bodies)))
     }
 
-    /// What reads is no value.
+    /// Raises `TypeError`: a `FastReader` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "FastReader",
@@ -224,12 +242,12 @@ impl FastReader {
 }
 
 impl FastReader {
-    /// What it reads with.
+    /// The library's reader.
     pub(crate) fn reader(&self) -> &Shared<twintac::FastReader> {
         &self.reader
     }
 
-    /// What a reading of this gel gives.
+    /// The arrays of one reading.
     pub(crate) fn answer<'py>(
         &self,
         py: Python<'py>,
@@ -255,7 +273,7 @@ fn placed(bodies: &[(Body, Pose)]) -> Vec<(&twintac::Body, twintac::Pose)> {
 /// Pressures at the ports, kPa, and force and torque, N and N mm.
 pub(crate) type Reading<'py> = (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>);
 
-/// Fast gels of many sensors of one kind, read in one call: what `FastGel.batch` returns.
+/// Evaluates the surrogate for many sensors of one kind in one call. `FastGel.batch` returns it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct FastBatch {
     batch: Shared<twintac::FastBatch>,
@@ -266,20 +284,27 @@ pub(crate) struct FastBatch {
 
 #[pymethods]
 impl FastBatch {
-    /// What every reading is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// What the gels do under what touches each of them. A sensor's numbers do not depend on the others.
+    /// Computes the pressures at the ports, and force and torque on each gel, under the bodies that
+    /// touch it. The numbers of a sensor do not depend on the other sensors.
     ///
-    /// `gel_from_body` has a row for each touch, the first sensor's first: place in mm and quaternion (x, y, z, w), or the place alone. `body` has
-    /// the numbers of the bodies, the first body unless given. `ends` says where each sensor's touches end; unless given, each has one.
+    /// - `gel_from_body`: poses of the bodies in the gel's frame, one row for each touch, those of
+    ///   the first sensor first: position, mm, and quaternion (x, y, z, w), `[n_touches, 7]`; or
+    ///   the position alone, `[n_touches, 3]`.
+    /// - `body`: indices of the bodies, `[n_touches]`; the first body unless given.
+    /// - `ends`: the end of each sensor's touches in the list, `[n_sensors]`; one touch for each
+    ///   sensor unless given.
     ///
-    /// Returns pressures at the ports, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, `[n_sensors, 6]`.
+    /// Returns the pressures at the ports, kPa, `[n_sensors, n_taxels]`, and the wrenches,
+    /// `[n_sensors, 6]`: force on each gel, N, and torque about the centre of its top, N mm.
     ///
-    /// Raises `Error`, whose `field` is the array that has another shape, or numbers that cannot be.
+    /// Raises `Error` for an array with another shape or with numbers that are not allowed; its
+    /// `field` names the array.
     #[pyo3(signature = (gel_from_body, body=None, ends=None))]
     fn read<'py>(
         &self,
@@ -309,7 +334,7 @@ impl FastBatch {
         self.batch.work(py, |batch| {
             let (pressure_kpa, wrench) = (&mut pressure_kpa[..], &mut wrench[..]);
             let mut read = || batch.read(&self.bodies, &touches, &ends, pressure_kpa, wrench);
-            // Nobody has to be woken for one thread.
+            // A single thread needs no pool.
             if self.n_threads > 1 {
                 in_parallel(read)
             } else {
@@ -321,7 +346,7 @@ impl FastBatch {
             rows(py, wrench.into_flattened(), [n_sensors, 6])?,
         ))
     }
-    /// What reads is no value.
+    /// Raises `TypeError`: a `FastBatch` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "FastBatch",

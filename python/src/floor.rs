@@ -1,4 +1,4 @@
-//! The pressure on a gel's floor, finer than the taxels.
+//! The pressure on the base of a gel, at more points than the taxels.
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -10,11 +10,12 @@ use crate::fast::PROVENANCE;
 use crate::pickle::refused;
 use crate::shared::Shared;
 
-/// Reads the pressure on a gel's floor on a grid: what a contact would make there by the fast gel. What `Inverse.floor_map` returns.
+/// Computes the pressure on the base of a gel under an estimated contact, on a grid of points, with
+/// the surrogate. `Inverse.floor_map` returns it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct FloorMap {
     map: Shared<twintac::FloorMap>,
-    /// Places of columns and rows, mm.
+    /// Positions of columns and rows, mm.
     places_mm: [Vec<f64>; 2],
     origin: Origin,
 }
@@ -38,27 +39,33 @@ impl FloorMap {
 
 #[pymethods]
 impl FloorMap {
-    /// What every pressure is: simulated, whatever the readings were that the contact was found from.
+    /// Provenance of the pressures: `"simulated"`, whatever the provenance of the readings from
+    /// which the contact was estimated.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// Places of the columns in the gel's plane, mm; `[n_columns]`.
+    /// Positions of the columns along x in the gel's plane, mm; `[n_columns]`.
     #[getter]
     fn x_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.places_mm[0])
     }
 
-    /// Places of the rows in the gel's plane, mm; `[n_rows]`.
+    /// Positions of the rows along y in the gel's plane, mm; `[n_rows]`.
     #[getter]
     fn y_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.places_mm[1])
     }
 
-    /// The map under a contact that the same inverse has found, kPa; `[n_rows, n_columns]`, the row of smallest y first. Each point is the mean over a disc as large as a port.
+    /// Computes the map under a contact that the same inverse has estimated.
     ///
-    /// Raises `Error` for a contact that another inverse has found.
+    /// - `contact`: the contact.
+    ///
+    /// Returns the pressures, kPa, `[n_rows, n_columns]`, the row of smallest y first. Each value
+    /// is the mean over a disc as large as a port.
+    ///
+    /// Raises `Error` for a contact that another inverse has estimated.
     fn read<'py>(&self, py: Python<'py>, contact: &Contact) -> PyResult<Bound<'py, PyArray2<f32>>> {
         if !contact.origin.is(&self.origin) {
             let problem = "was found by another inverse, expected one of the inverse that made this map";
@@ -69,7 +76,7 @@ impl FloorMap {
         rows(py, pressure_kpa, [n_rows, n_columns])
     }
 
-    /// A map is none: it is prepared where it is used.
+    /// Raises `TypeError`: a `FloorMap` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "FloorMap",

@@ -1,4 +1,4 @@
-//! Friction of a body on a fast gel.
+//! Friction of a body on the surrogate of a gel.
 
 use pyo3::prelude::*;
 
@@ -10,9 +10,13 @@ use crate::sensor::Sensor;
 use crate::shape::Body;
 use crate::shared::Shared;
 
-/// Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips. Nothing is held yet.
+/// Friction of one body on one sensor's gel, frame by frame: the body shears the top of the gel
+/// until it slips. At first, there is no contact.
 ///
-/// `coefficient` is Coulomb's, 0 or more; anything else raises `Error`.
+/// - `sensor`: the sensor.
+/// - `coefficient`: Coulomb's coefficient, 0 or more.
+///
+/// Raises `Error` for a coefficient that is negative or not finite.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Friction {
     friction: Shared<twintac::Friction>,
@@ -31,7 +35,13 @@ impl Friction {
         })
     }
 
-    /// One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+    /// Computes one more frame of a sensor that this body alone touches.
+    ///
+    /// - `reader`: the reader of the sensor's surrogate.
+    /// - `body`: the body.
+    /// - `gel_from_body`: pose of the body in the gel's frame.
+    ///
+    /// Returns what `FastReader.read` returns, with friction.
     ///
     /// Raises `Error` for the reader of another gel.
     fn read<'py>(
@@ -51,12 +61,12 @@ impl Friction {
         })?
     }
 
-    /// Lets go of what touches: the next moment begins without friction.
+    /// Ends the contact: the next frame begins without friction.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
         self.friction.look(py, twintac::Friction::release)
     }
 
-    /// What is held is no value.
+    /// Raises `TypeError`: a `Friction` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "Friction",
@@ -72,7 +82,7 @@ impl Friction {
     }
 }
 
-/// Friction with a coefficient that can be.
+/// Friction, if the coefficient is allowed.
 pub(crate) fn friction(
     py: Python<'_>,
     sensor: &Sensor,

@@ -21,10 +21,14 @@ use crate::sensor::Sensor;
 use crate::settings::but;
 use crate::state::GelState;
 
-/// The gel of a sensor, ready to be pressed: a finite-element model with the material of the description.
+/// The gel of a sensor: a finite-element model with the material of the description.
 ///
-/// `settings` are those of the simulation that differ from the usual ones for single presses: `{"edges_per_height": 4.0}`. More edges take longer and
-/// err less. Raises `Error`, whose `field` is the setting that cannot be.
+/// - `sensor`: the sensor.
+/// - `settings`: settings of the simulation that differ from the default ones for single presses,
+///   such as `{"edges_per_height": 4.0}`. With more edges, a press takes longer and has a smaller
+///   error.
+///
+/// Raises `Error` for a setting that is not allowed; its `field` names the setting.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Gel {
     gel: Arc<twintac::Gel>,
@@ -53,30 +57,44 @@ impl Gel {
         Ok(Self::of(sensor, settings.simulate))
     }
 
-    /// Presses the gel down to the depth of the press, which takes about a second. A gel whose material relaxes does so at the speed of the press. Ctrl-C ends the wait.
+    /// Presses the gel down to the depth of the press, which takes about a second. If the material
+    /// of the gel relaxes, it does so at the speed of the press. Ctrl-C ends the wait.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, a place beside the gel, and a depth at which the solver finds no equilibrium.
+    /// - `press`: the press.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, for a location beside the gel,
+    /// and for a depth at which the solver finds no equilibrium.
     fn press(&self, py: Python<'_>, press: &Press) -> PyResult<Pressed> {
         let (gel, press) = (Arc::clone(&self.gel), twintac::Press::from(press));
         let pressed = long_call(py, move || gel.press(&press))?.or_raise(py)?;
         Ok(Pressed { pressed })
     }
 
-    /// Where an indenter, lowered from a pose in the gel's frame whose height is ignored, first touches the undeformed gel.
+    /// The pose at which an indenter that is lowered first touches the undeformed gel.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, and a place beside the gel.
+    /// - `indenter`: name of the indenter.
+    /// - `above`: pose in the gel's frame from which it is lowered; its height is ignored.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and for a location beside the
+    /// gel.
     fn touch(&self, py: Python<'_>, indenter: &str, above: Pose) -> PyResult<Pose> {
         let pose = py.detach(|| self.gel.touch(indenter, &above.pose)).or_raise(py)?;
         Ok(Pose { pose })
     }
 
-    /// The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go, at least one: the mesh
-    /// is fine along the straight ways between them, and for the deepest of them. Takes about a second; Ctrl-C ends the wait.
+    /// Returns the gel before an indenter presses it. The indenter can then be moved from pose to
+    /// pose as they come. The call takes about a second; Ctrl-C ends the wait.
     ///
-    /// With `deadline_ms`, 1 to 60000, each frame is answered within so many milliseconds of wall time with what is found by then: `GelState.converged` says whether its forces
-    /// are balanced, `GelState.residual` how nearly. Frames with a `force_n` take the time that they need. Such readings are not reproducible.
+    /// - `indenter`: name of the indenter.
+    /// - `poses`: poses in the gel's frame between which the indenter will move, at least one. The
+    ///   mesh is fine along the straight lines between them, and for the deepest of them.
+    /// - `deadline_ms`: limit of the wall time of each frame, 1 to 60000 ms. A frame is then
+    ///   returned at the limit as far as it is computed: `GelState.converged` says whether its
+    ///   forces are balanced, and `GelState.residual` how nearly. Frames with a `force_n` ignore
+    ///   the limit. Readings with a limit are not reproducible.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a deadline out of its range.
+    /// Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
+    /// gel, and for a limit out of its range.
     #[pyo3(signature = (indenter, poses, *, deadline_ms=None))]
     fn state(
         &self,
@@ -101,10 +119,15 @@ impl Gel {
         Ok(GelState::new(state, self.taxels.clone()))
     }
 
-    /// Takes an indenter along a path, frame by frame; each takes from some milliseconds to seconds. Ctrl-C ends it before its next frame. A path that cannot be followed
-    /// to its end is no error: `Followed.failure` says why the frames end early.
+    /// Moves an indenter along a path, frame by frame. A frame takes from some milliseconds to
+    /// seconds. Ctrl-C ends the call before the next frame. If a path cannot be followed to its
+    /// end, its frames end early, and `Followed.failure` says why; this raises no error.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a point outside the gel or with the name of a taxel.
+    /// - `path`: the path.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
+    /// gel, and for a point that is outside the gel or has the name of a taxel.
     #[pyo3(signature = (path, *, progress=None))]
     fn follow(
         &self,
@@ -132,7 +155,7 @@ impl Gel {
         })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -159,7 +182,8 @@ impl Kept for Gel {
     }
 }
 
-/// A simulated press, from first touch to full depth: what `Gel.press` returns. Each frame is deeper than the one before.
+/// A simulated press, from first touch to full depth: the result of `Gel.press`. Each frame is
+/// deeper than the one before.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Pressed {
     pressed: twintac::Pressed,
@@ -173,7 +197,7 @@ impl Pressed {
 
 #[pymethods]
 impl Pressed {
-    /// What every number here is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         twintac::Pressed::PROVENANCE
@@ -191,8 +215,9 @@ impl Pressed {
         self.each(py, |frame| frame.force_n)
     }
 
-    /// Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`. A barometer there would read this if it followed
-    /// the gel without gain, delay and creep; what a real one makes of it, a trained `Twin` tells.
+    /// Port pressure of each taxel: the hydrostatic pressure in the gel over the port, kPa;
+    /// `[n_frames, n_taxels]`. An ideal barometer without gain, delay and relaxation would read
+    /// this. A trained `Twin` predicts what a real one reads.
     #[getter]
     fn readings_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let frames = self.pressed.frames();
@@ -203,15 +228,18 @@ impl Pressed {
         rows(py, readings, [frames.len(), self.pressed.readings_kpa().len()])
     }
 
-    /// Draws readings and force over depth.
+    /// Draws readings and force over depth with Matplotlib.
     ///
-    /// With Matplotlib; its two axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+    /// - `axes`: two axes to draw in; new ones unless given.
+    ///
+    /// Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+    /// Matplotlib, and `Error` for another number of axes.
     #[pyo3(signature = (axes=None))]
     fn plot<'py>(result: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         plot(result.py(), "pressed", (result, axes))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

@@ -1,4 +1,5 @@
-//! Arguments as they are given. They become arrays, counts and seeds by their name alone, so that what cannot be is said by name.
+//! Arguments as Python passes them. They become arrays, counts and seeds together with their name,
+//! so that an error can name the argument.
 
 use std::ops::RangeInclusive;
 
@@ -11,15 +12,15 @@ use crate::error::unusable;
 /// Most threads of a batch.
 const MOST_THREADS: usize = 1024;
 
-/// Letters of an argument that an error shows.
+/// Number of characters of an argument that an error shows.
 const SHOWN: usize = 40;
 
-/// An argument of which nothing is known yet.
+/// An argument that has not been checked yet.
 #[derive(FromPyObject)]
 #[pyo3(transparent)]
 pub(crate) struct Given<'py>(Bound<'py, PyAny>);
 
-/// Numbers in the order of their indices.
+/// An array of numbers, with its shape.
 pub(crate) struct Array<const N: usize> {
     pub(crate) shape: [usize; N],
     pub(crate) values: Vec<f64>,
@@ -33,7 +34,8 @@ impl Array<2> {
 }
 
 impl Given<'_> {
-    /// Numbers of any type and layout, as many copies as they need; what is masked is NaN. `expected` says shape and unit: `[n_poses, 3], mm`.
+    /// Numbers of any type and memory layout, converted to `f64`; masked values are NaN. `expected`
+    /// states shape and unit for errors: `[n_poses, 3], mm`.
     pub(crate) fn numbers<const N: usize>(&self, field: &str, expected: &str) -> PyResult<Array<N>> {
         let py = self.0.py();
         let refused = |problem: String| unusable(py, field, &format!("{problem}, expected {expected}"));
@@ -48,7 +50,7 @@ impl Given<'_> {
         Ok(Array { shape, values })
     }
 
-    /// Numbers for which NumPy has to convert them.
+    /// The numbers after a conversion by NumPy.
     fn converted(&self) -> PyResult<Bound<'_, PyArrayDyn<f64>>> {
         let numpy = self.0.py().import("numpy")?;
         let given = if self.0.hasattr("mask")? && self.0.hasattr("filled")? {
@@ -77,7 +79,7 @@ impl Given<'_> {
         )
     }
 
-    /// As many numbers as are expected.
+    /// Exactly `N` numbers.
     pub(crate) fn few<const N: usize>(&self, field: &str, unit: &str) -> PyResult<[f64; N]> {
         let expected = format!("{N} numbers{unit}");
         let array: Array<1> = self.numbers(field, &expected)?;
@@ -88,7 +90,7 @@ impl Given<'_> {
         <[f64; N]>::try_from(array.values).map_err(refused)
     }
 
-    /// An integer of a range: of Python or of NumPy.
+    /// An integer in a range, of Python or of NumPy.
     pub(crate) fn integer(&self, field: &str, range: RangeInclusive<u64>) -> PyResult<u64> {
         let is_flag = self.0.is_instance_of::<PyBool>();
         let found = self
@@ -107,13 +109,13 @@ impl Given<'_> {
         })
     }
 
-    /// The same as a count of things in memory.
+    /// The same as a `usize`.
     pub(crate) fn count(&self, field: &str, range: RangeInclusive<usize>) -> PyResult<usize> {
         let range = *range.start() as u64..=*range.end() as u64;
         Ok(self.integer(field, range)? as usize)
     }
 
-    /// An integer from 0 on.
+    /// An integer of 0 or more.
     pub(crate) fn seed(&self, field: &str) -> PyResult<u64> {
         self.integer(field, 0..=u64::MAX)
     }
@@ -144,7 +146,8 @@ impl Given<'_> {
         Err(refused(format!("has {} values", seeds.len())))
     }
 
-    /// Integers of any type, `expected` such as `[n_touches]`; other numbers are not rounded to some.
+    /// Integers of any type. `expected` states the shape, such as `[n_touches]`. Other numbers are
+    /// refused, not rounded.
     pub(crate) fn integers<const N: usize>(
         &self,
         field: &str,
@@ -167,7 +170,7 @@ impl Given<'_> {
         Ok((shape, array.readonly().as_array().iter().copied().collect()))
     }
 
-    /// Yes or no for each of `n`.
+    /// True or false for each of `n`.
     pub(crate) fn flags(&self, field: &str, n: usize) -> PyResult<Vec<bool>> {
         let py = self.0.py();
         let refused =
@@ -181,7 +184,7 @@ impl Given<'_> {
         Ok(flags.readonly().as_array().iter().copied().collect())
     }
 
-    /// The argument as an error shows it.
+    /// The argument as text for an error.
     fn shown(&self) -> String {
         let text = self
             .0
@@ -195,7 +198,7 @@ impl Given<'_> {
     }
 }
 
-/// As many threads as are asked for, or as there are cores.
+/// The given number of threads, or the number of cores.
 pub(crate) fn threads(given: Option<Given<'_>>) -> PyResult<usize> {
     match given {
         Some(given) => given.count("n_threads", 1..=MOST_THREADS),
@@ -205,7 +208,7 @@ pub(crate) fn threads(given: Option<Given<'_>>) -> PyResult<usize> {
     }
 }
 
-/// A time between frames that can be.
+/// Checks a time between frames.
 pub(crate) fn since(py: Python<'_>, since_previous_s: f64) -> PyResult<()> {
     if (0.0..=LONGEST_S).contains(&since_previous_s) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! From readings back to what touches.
+//! Contact estimation from readings.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,22 +20,35 @@ use crate::shape::Shape;
 use crate::shared::Shared;
 use crate::table::ReadingTable;
 
-/// Finds from readings what touches: place, depth, force, and which of the known shapes.
+/// Contact estimation from readings: location, depth and force of the contact, and which of the
+/// known shapes it is.
 ///
-/// Made like this it knows what is read by a fast gel and the shapes, by name, that may touch it, upright; `of_twin` takes a trained twin in its place, `of_tables` tables of readings.
-/// Keywords are settings:
+/// The constructor takes the surrogate of the gel as the model of the readings. `of_twin` takes a
+/// trained twin instead, and `of_tables` takes tables of readings.
 ///
-/// - `noise_kpa`: standard deviation of a reading's noise, kPa; 0.05 unless given.
-/// - `model_part`, `model_part_of_largest`: standard deviation of the model's error as part of each reading, 0.03, and as part of the frame's largest one, 0.01.
-/// - `force_part`: the same of the force, as part of it; 0.03.
+/// - `gel`: the surrogate of the gel.
+/// - `shapes`: the known shapes that may touch the gel, by name. They are upright.
+///
+/// The other keywords are settings, here with their defaults:
+///
+/// - `noise_kpa`: standard deviation of a reading's noise, kPa; 0.05.
+/// - `model_part`, `model_part_of_largest`: standard deviation of the model's error, as a fraction
+///   of each reading, 0.03, and as a fraction of the largest reading of the frame, 0.01.
+/// - `force_part`: standard deviation of the model's error of the force, as a fraction of the
+///   force; 0.03.
 /// - `correlated_s`: time within which errors of the model count as one, s; 0.1.
-/// - `touch_deviations`: a contact is what reads so many deviations of the noise, at one taxel at least; 6.
-/// - `place_walk_mm`, `depth_walk_mm`, `spin_walk_rad`: how far a contact wanders in a second: 3 mm, 2 mm, 1 radian.
-/// - `shape_memory_s`: time after which what told the shape is forgotten to a part of 1/e, s; 3.
-/// - `n_starts`, `n_steps`: presses of each shape that are followed at once, 3, and steps towards the best of them in a frame, 1.
-/// - `deepest_mm`: deepest press that is thought of, mm; 5. Not deeper than the gel was taught.
+/// - `touch_deviations`: there is a contact if at least one reading is this many standard
+///   deviations of the noise above zero; 6.
+/// - `place_walk_mm`, `depth_walk_mm`, `spin_walk_rad`: standard deviation of the random motion of
+///   a contact in one second: location, 3 mm, depth, 2 mm, and yaw, 1 radian.
+/// - `shape_memory_s`: time after which evidence for a shape is reduced to 1/e, s; 3.
+/// - `n_starts`, `n_steps`: number of possible presses of each shape that are followed at once, 3,
+///   and number of steps that each of them takes in a frame, 1.
+/// - `deepest_mm`: largest depth that is considered, mm; 5. Give no more than the largest depth
+///   that the surrogate was trained on.
 ///
-/// Raises `Error`, whose `field` is the setting that cannot be, for a shape that cannot be, and if there is no shape.
+/// Raises `Error` for a setting that is not allowed (its `field` names the setting), for an
+/// impossible shape, and if there is no shape.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Inverse {
     model: Model,
@@ -43,7 +56,7 @@ pub(crate) struct Inverse {
     n_taxels: usize,
 }
 
-/// By what it knows what is read of a contact.
+/// The model of the readings that it uses.
 enum Model {
     Fast(Box<twintac::Inverse<FastModel>>),
     Tables(twintac::Inverse<TableModel>),
@@ -79,9 +92,15 @@ impl Inverse {
         })
     }
 
-    /// By what is read of each shape, by name, at places and depths: measured, or simulated. Keywords are those of the class, which has the names of the settings.
+    /// An inverse that takes tables of readings, measured or simulated, as the model of the
+    /// readings.
     ///
-    /// Raises `Error` for tables of different numbers of taxels, a setting that cannot be, and if there is no shape.
+    /// - `tables`: for each shape, by name, the readings at locations and depths.
+    ///
+    /// The other keywords are settings, as in the class.
+    ///
+    /// Raises `Error` for tables with different numbers of taxels, for a setting that is not
+    /// allowed, and if there is no shape.
     #[staticmethod]
     #[pyo3(signature = (tables, **settings))]
     fn of_tables(
@@ -110,11 +129,21 @@ impl Inverse {
         })
     }
 
-    /// By the trained twin in a folder (`Run.model_folder`), whose memory is taken off the readings. Shapes are the named indenters of its sensor, or all of them, turned as described.
-    /// Keywords are those of the class, which has the names of the settings; unless given, `noise_kpa` is 0.03, `model_part_of_largest` 0.02, `n_steps` 3 and
-    /// `deepest_mm` 2.5. Taxels that the description calls doubtful are not used. The gel is solved at places all over the taxels, which takes minutes; Ctrl-C stops it.
+    /// An inverse that takes a trained twin as the model of the readings. It removes the twin's
+    /// viscoelastic relaxation from the readings. Excluded taxels (`doubtful` in the description)
+    /// are not used. The gel is computed by finite elements at locations all over the taxels, which
+    /// takes minutes; Ctrl-C stops it.
     ///
-    /// Raises `Error` for a folder that holds no twin, an indenter that the sensor does not have, and a setting that cannot be.
+    /// - `folder`: folder of the twin (`Run.model_folder`).
+    /// - `indenters`: names of the sensor's indenters that are the known shapes, in the described
+    ///   orientation; all of them unless given.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// The other keywords are settings, as in the class. Unless given, `noise_kpa` is 0.03,
+    /// `model_part_of_largest` 0.02, `n_steps` 3 and `deepest_mm` 2.5.
+    ///
+    /// Raises `Error` for a folder that holds no twin, for an indenter that the sensor does not
+    /// have, and for a setting that is not allowed.
     #[staticmethod]
     #[pyo3(signature = (folder, indenters=Vec::new(), *, progress=None, **settings))]
     fn of_twin(
@@ -136,13 +165,16 @@ impl Inverse {
         })
     }
 
-    /// Names of the shapes; in alphabetical order, or of a twin as its sensor's description has its indenters.
+    /// Names of the known shapes, in alphabetical order; for a twin, in the order of the indenters
+    /// in the sensor description.
     #[getter]
     fn shapes(&self) -> Vec<String> {
         self.origin.shapes.to_vec()
     }
 
-    /// Follows the contact of a sensor that nothing has touched yet. `provenance` says where its readings come from: `"real"`, `"emulated"` or `"simulated"`.
+    /// Starts the contact estimation for a sensor that nothing has touched yet.
+    ///
+    /// - `provenance`: provenance of its readings: `"real"`, `"emulated"` or `"simulated"`.
     fn start(&self, provenance: Provenance) -> Tracker {
         Tracker {
             tracker: Shared::new(match &self.model {
@@ -156,10 +188,14 @@ impl Inverse {
         }
     }
 
-    /// Prepares maps of the pressure on the gel's floor under contacts, finer than the taxels: on a grid of this spacing, mm, in the middle of the gel. 0.5 mm makes about 2,500 points
-    /// of PhysTac's floor.
+    /// Prepares maps of the pressure on the base of the gel under contacts, at more points than the
+    /// taxels.
     ///
-    /// Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and for an inverse that is not of a fast gel.
+    /// - `spacing_mm`: spacing of the grid of points, which is centred on the gel, mm. 0.5 mm makes
+    ///   about 2,500 points for PhysTac.
+    ///
+    /// Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and
+    /// for an inverse without a surrogate.
     #[pyo3(signature = (spacing_mm=0.5))]
     fn floor_map(&self, py: Python<'_>, spacing_mm: f64) -> PyResult<FloorMap> {
         let Model::Fast(inverse) = &self.model else {
@@ -173,7 +209,7 @@ impl Inverse {
         Ok(FloorMap::new(map, self.origin.clone()))
     }
 
-    /// An inverse is none: it is made where it is used.
+    /// Raises `TypeError`: an `Inverse` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "Inverse",
@@ -191,7 +227,7 @@ impl Inverse {
     }
 }
 
-/// Follows the contact of one sensor, frame by frame: what `Inverse.start` returns.
+/// Estimates the contact of one sensor, frame by frame. `Inverse.start` returns it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Tracker {
     tracker: Shared<Follower>,
@@ -208,16 +244,22 @@ enum Follower {
 
 #[pymethods]
 impl Tracker {
-    /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
+    /// Provenance of the readings: `"real"`, `"emulated"` or `"simulated"`.
     #[getter]
     fn provenance(&self) -> String {
         self.provenance.to_string()
     }
 
-    /// Takes a frame, `since_previous_s` after the one before: readings above the untouched sensor, kPa, `[n_taxels]`. Of an inverse by a twin, a NaN is a taxel without
-    /// a usable reading: its last usable one stands. Returns what touches, or `None` if the readings are within noise.
+    /// Takes one more frame, and estimates the contact.
     ///
-    /// Raises `Error` for a time below 0, another number of readings, and readings that are not finite or beyond a million kPa.
+    /// - `since_previous_s`: time since the previous frame, s.
+    /// - `readings_kpa`: readings above the untouched sensor, kPa; `[n_taxels]`. With a twin as the
+    ///   model, NaN marks a taxel without a usable reading; its last usable reading is taken.
+    ///
+    /// Returns the contact, or `None` if the readings are within noise.
+    ///
+    /// Raises `Error` for a time below 0, for another number of readings, and for readings that are
+    /// not finite or beyond a million kPa.
     fn update(
         &self,
         py: Python<'_>,
@@ -253,7 +295,7 @@ impl Tracker {
         }))
     }
 
-    /// A tracker is none: it is started where it is used.
+    /// Raises `TypeError`: a `Tracker` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused("Tracker", "start one in each process, with Inverse.start")
     }

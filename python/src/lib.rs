@@ -1,6 +1,37 @@
-//! TwinTac for Python: the library `twintac`, with NumPy in and out.
+//! The Python extension module `twintac._twintac`: the library `twintac`, with NumPy arrays in and
+//! out.
 //!
-//! Each file binds the types of one of the library's files; nothing is computed here. Long calls work on a thread of their own ([`long_call`]).
+//! The Python package `twintac` (folder `python/twintac`) re-exports its classes. Units are those
+//! of the library: mm, N, kPa, s, radians.
+//!
+//! # How it works
+//!
+//! - Each file of `python/src` binds the types of one file of the library. Nothing is computed
+//!   here; what is missing is added to the library.
+//! - What makes the library panic, such as arrays of a wrong length or numbers that are not finite,
+//!   is checked before the call, so that it becomes an exception (`error`).
+//! - A call that takes long works on a thread of its own ([`long_call`]). The calling thread
+//!   handles signals and reports progress, because Python handles signals in no other thread. A
+//!   press that Ctrl-C interrupts runs on without its result being used. A run is waited for, so
+//!   that no second one works in its folder.
+//! - The command is the library of `crates/app/cli`, called in Python's process. The SHA-256 of the
+//!   package's own file identifies the build.
+//! - Arguments that are arrays, counts or seeds arrive as `Given`, which gives a value only for a
+//!   named argument and a range or shape (`given`). An unusable argument is therefore refused by
+//!   name before anything is allocated.
+//! - Parallel work runs in `in_parallel` (`pool`), on threads that each process makes for itself.
+//!   The global threads of rayon do not exist in a forked process, which would wait for them
+//!   forever.
+//! - What steps change is `Shared` (`shared`): threads take turns. Work inside the pool never locks
+//!   it, because a waiting pool thread may take up another caller's work.
+//! - Values are `Kept` (`pickle`): a pickle has the class's name and its state as CBOR; `restore`
+//!   makes the value again.
+//! - Type stubs are written by hand, because those that PyO3 makes have no array types.
+//!   `mypy.stubtest` compares them with the library. Their docstrings are the doc comments of the
+//!   exported classes and methods here: `python/tests/stubs.py` copies them.
+//! - A recording is handed to other libraries as one Arrow batch, by the PyCapsule interface
+//!   (`arrow`). The crate `arrow-array` contains the unsafe code for that; it brings three more
+//!   crates, all of the same project as `parquet`.
 
 mod array;
 mod arrow;

@@ -1,4 +1,5 @@
-//! Calls that take from a second to hours: a thread of their own works, the calling one hears Python's signals and tells of progress.
+//! Calls that take from a second to hours. A thread of their own does the work, while the calling
+//! thread handles Python's signals and reports progress.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -14,25 +15,25 @@ use twintac::Progress;
 use crate::pool::in_parallel;
 use crate::shared::Shared;
 
-/// How long Ctrl-C may wait to be heard.
+/// Longest delay before Ctrl-C is handled.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// What the working thread says.
+/// Messages of the working thread.
 enum Message<T> {
-    /// A person should know this.
+    /// A message that a person should read.
     Note(String),
-    /// How far the work is.
+    /// Progress of the work.
     Step {
         work: String,
         done: usize,
         total: usize,
         state: String,
     },
-    /// It is done.
+    /// The work is done.
     Done(T),
 }
 
-/// Does work that nobody follows. On Ctrl-C it is left to itself, and what comes of it is dropped.
+/// Does work without reporting progress. After Ctrl-C the work runs on, and its result is dropped.
 pub(crate) fn long_call<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -40,7 +41,8 @@ pub(crate) fn long_call<T: Send + 'static>(
     long_call_on(py, Arc::new(Shared::new(())), |()| work())
 }
 
-/// The same with a value that no other thread may have meanwhile, also after Ctrl-C.
+/// The same with exclusive access to a value, which lasts until the work is done, also after
+/// Ctrl-C.
 pub(crate) fn long_call_on<V: Send + 'static, T: Send + 'static>(
     py: Python<'_>,
     value: Arc<Shared<V>>,
@@ -60,7 +62,8 @@ pub(crate) fn long_call_on<V: Send + 'static, T: Send + 'static>(
     }
 }
 
-/// Does work that `progress` follows, as `listener` in `_progress.py` understands it. On Ctrl-C the work ends before its next step.
+/// Does work that reports to `progress`, as `listener` in `_progress.py` interprets it. After
+/// Ctrl-C the work ends before its next step.
 pub(crate) fn followed<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -98,7 +101,8 @@ pub(crate) fn followed<T: Send + 'static>(
     }
 }
 
-/// Listens until the work is done, or a signal or the listener raises an exception. Nothing comes of work that panicked.
+/// Receives messages until the work is done, or until a signal or the listener raises an exception.
+/// Returns `None` if the work panicked.
 fn listen<T: Send>(
     py: Python<'_>,
     mut receiver: Receiver<Message<T>>,
@@ -134,7 +138,7 @@ fn listen<T: Send>(
     }
 }
 
-/// Panics as the worker did.
+/// Continues the worker's panic.
 fn end<T>(py: Python<'_>, worker: JoinHandle<()>) -> PyResult<T> {
     match py.detach(|| worker.join()) {
         Err(panic) => resume_unwind(panic),
@@ -142,7 +146,7 @@ fn end<T>(py: Python<'_>, worker: JoinHandle<()>) -> PyResult<T> {
     }
 }
 
-/// Tells the calling thread of progress.
+/// Sends progress to the calling thread.
 struct Teller<T> {
     sender: Sender<Message<T>>,
     work: Mutex<String>,
@@ -159,7 +163,7 @@ impl<T> Teller<T> {
             total: self.total.load(Ordering::Relaxed),
             state: state.to_owned(),
         };
-        let _ = self.sender.send(step); // to nobody, once the caller was interrupted
+        let _ = self.sender.send(step); // after an interrupt there is no receiver
     }
 }
 
@@ -184,7 +188,7 @@ impl<T: Send> Progress for Teller<T> {
         self.stops.load(Ordering::Relaxed)
     }
 
-    /// What had fewer steps than were thought of is done all the same.
+    /// Work can have fewer steps than announced; the total is corrected.
     fn finished(&self) {
         let done = self.done.load(Ordering::Relaxed);
         self.total.store(done, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Pressure between the taxels.
+//! The pressure between the taxels.
 
 use std::path::PathBuf;
 
@@ -13,13 +13,17 @@ use crate::plot::plot;
 use crate::recording::Provenance;
 use crate::sensor::Sensor;
 
-/// A continuous map over the gel of what a few taxels read: 96 columns and 64 rows, interpolated between the taxels. A notebook shows its picture.
+/// A pressure map: the readings of a few taxels, interpolated over the gel, on 96 columns and 64
+/// rows. A notebook shows its picture.
 ///
-/// - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`. A taxel whose reading is NaN or masked is left out: the map is that of the other
-///   taxels, and NaN everywhere if there is none.
-/// - `provenance`: where they come from: `"real"`, `"emulated"` or `"simulated"`.
+/// - `sensor`: the sensor.
+/// - `readings_kpa`: readings above the unloaded baseline, kPa; `[n_taxels]`. A taxel whose reading
+///   is NaN or masked is left out: the map is interpolated from the other taxels. It is NaN
+///   everywhere if there is none.
+/// - `provenance`: provenance of the readings: `"real"`, `"emulated"` or `"simulated"`.
 ///
-/// Raises `Error` for another number of readings than the sensor has taxels, and for one that is infinite.
+/// Raises `Error` if the number of readings is not the number of taxels, and for an infinite
+/// reading.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct PressureMap {
     map: twintac::PressureMap,
@@ -62,20 +66,21 @@ impl PressureMap {
         Self::of(py, sensor, readings_kpa.values, provenance)
     }
 
-    /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
+    /// Provenance of the readings: `"real"`, `"emulated"` or `"simulated"`.
     #[getter]
     fn provenance(&self) -> String {
         self.provenance.to_string()
     }
 
-    /// Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first. The grid spans the box that holds the gel (`Sensor.bounds_mm`).
+    /// Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first. The
+    /// grid spans the box that contains the gel (`Sensor.bounds_mm`).
     #[getter]
     fn pressure_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [n_columns, n_rows] = self.map.grid();
         rows(py, self.map.pressure_kpa().to_vec(), [n_rows, n_columns])
     }
 
-    /// Names of the taxels without a reading: the map was made without them.
+    /// Names of the taxels without a reading. The map was made without them.
     #[getter]
     fn missing(&self) -> Vec<String> {
         self.map.missing().to_vec()
@@ -86,23 +91,28 @@ impl PressureMap {
         self.map.svg()
     }
 
-    /// Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
+    /// Draws the map into a file, and marks the taxels that have a reading.
+    ///
+    /// - `path`: path of the file, with the ending `.svg` or `.png`.
     ///
     /// Raises `Error` for a name with another ending, and for a file that cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.map.write(path)).or_raise(py)
     }
 
-    /// Draws the map in the gel's plane, with a scale in kPa.
+    /// Draws the map in the gel's plane with Matplotlib, with a scale in kPa.
     ///
-    /// With Matplotlib; its axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it.
+    /// - `axes`: the axes to draw in; new axes unless given.
+    ///
+    /// Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+    /// Matplotlib.
     #[pyo3(signature = (axes=None))]
     fn plot<'py>(map: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let bounds_mm = map.get().sensor.bounds_mm(map.py())?;
         plot(map.py(), "pressure_map", (map, bounds_mm, axes))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

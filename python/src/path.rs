@@ -1,4 +1,4 @@
-//! Paths of an indenter, and what a gel does along them.
+//! Paths of an indenter, and the response of a gel along them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,17 +15,21 @@ use crate::pickle::{Kept, Reduced, reduced};
 use crate::plot::plot;
 use crate::pose::poses;
 
-/// A path of an indenter over and into a gel, through poses or to forces: down, aside, tilted, and up again. Between its poses the indenter moves evenly.
+/// A path of an indenter over and into a gel, through poses or to forces: down, sideways, tilted,
+/// and up again. Between the poses the indenter moves at constant speed.
 ///
 /// - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
-/// - `time_s`: when it is at each pose, s, increasing; `[n_poses]`.
-/// - `gel_from_indenter`: its poses in the gel's frame: place of its origin, mm, and quaternion (x, y, z, w), `[n_poses, 7]`; or the place alone, `[n_poses, 3]`.
-/// - `zero`: where heights are counted from: the `"board"`, or `"touch"`, where the indenter first touches at the place and turn of the first pose.
-/// - `rate_hz`: frames in a second between the poses, Hz; without it, the poses themselves are the frames.
-/// - `force_n`: the force straight down, N, above 0, with which the indenter presses at each pose: it goes down or up from there until it does. NaN where it stays
-///   at the pose; `[n_poses]`.
+/// - `time_s`: times of the poses, s, increasing; `[n_poses]`.
+/// - `gel_from_indenter`: poses of the indenter in the gel's frame: position of its origin, mm, and
+///   quaternion (x, y, z, w), `[n_poses, 7]`; or the position alone, `[n_poses, 3]`.
+/// - `zero`: origin of heights: `"board"`, or `"touch"`, the height at which the indenter first
+///   touches the gel at the location and rotation of the first pose.
+/// - `rate_hz`: frame rate between the poses, Hz. Without it, the poses themselves are the frames.
+/// - `force_n`: force straight down with which the indenter presses at each pose, N, above 0;
+///   `[n_poses]`. The indenter moves down or up from the pose until it has this force. With NaN, it
+///   stays at the pose.
 ///
-/// Raises `Error`, whose `field` is what cannot be.
+/// Raises `Error` for a value that is not allowed; its `field` names the argument.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct PressPath {
@@ -76,9 +80,11 @@ impl PressPath {
         Ok(Self { path })
     }
 
-    /// Reads a path (TOML), as `twintac simulate --path` does. It may also have points in the gel at which the pressure is read, and another direction of forces.
+    /// Reads a path from a file (TOML), as `twintac simulate --path` does. A file may also have
+    /// points in the gel at which the pressure is read, and another direction of forces.
     ///
-    /// Raises `Error` with file, line and field if it is wrong, and with the file if it cannot be read.
+    /// Raises `Error` with file, line and field if the file is wrong, and with the file if it
+    /// cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
@@ -100,7 +106,7 @@ impl PressPath {
         PyArray1::from_iter(py, frames.iter().map(|frame| frame.time_s))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -114,7 +120,8 @@ impl PressPath {
     }
 }
 
-/// What a gel does along a path: what `Gel.follow` returns. Every array has a row for each frame, up to the last good one.
+/// The simulated gel along a path: the result of `Gel.follow`. Every array has a row for each
+/// frame, up to the last one that was computed.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Followed {
     pub(crate) followed: twintac::Followed,
@@ -139,13 +146,13 @@ impl Followed {
 
 #[pymethods]
 impl Followed {
-    /// What every number here is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// Why the frames end before the path does; `None` if they do not.
+    /// Why the frames end before the path does; `None` if they reach its end.
     #[getter]
     fn failure(&self) -> Option<&str> {
         self.followed.failure.as_deref()
@@ -157,31 +164,35 @@ impl Followed {
         self.each(py, |frame| frame.time_s)
     }
 
-    /// The indenter's origin in the gel's frame, mm; `[n_frames, 3]`.
+    /// Position of the indenter's origin in the gel's frame, mm; `[n_frames, 3]`.
     #[getter]
     fn position_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.vectors(py, |frame| frame.position_mm)
     }
 
-    /// How far the indenter is below where, at the place and turn of the first pose, it first touches the gel, mm; `[n_frames]`.
+    /// Depth below the height at which the indenter first touches the gel at the location and
+    /// rotation of the first pose, mm; `[n_frames]`.
     #[getter]
     fn depth_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.each(py, |frame| frame.depth_mm)
     }
 
-    /// Force of the indenter on the gel, in the gel's frame, N; `[n_frames, 3]`. A press straight down has a negative z.
+    /// Force of the indenter on the gel, in the gel's frame, N; `[n_frames, 3]`. Its z component is
+    /// negative if the indenter presses straight down.
     #[getter]
     fn force_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.vectors(py, |frame| frame.force_n)
     }
 
-    /// Torque of the indenter on the gel about the indenter's origin, in the gel's frame, N mm; `[n_frames, 3]`.
+    /// Torque of the indenter on the gel about the indenter's origin, in the gel's frame, N mm;
+    /// `[n_frames, 3]`.
     #[getter]
     fn torque_n_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.vectors(py, |frame| frame.torque_n_mm)
     }
 
-    /// Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`.
+    /// Port pressure of each taxel: the hydrostatic pressure in the gel over the port, kPa;
+    /// `[n_frames, n_taxels]`.
     #[getter]
     fn readings_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let frames = &self.followed.frames;
@@ -206,15 +217,18 @@ impl Followed {
             .collect()
     }
 
-    /// Draws readings, force and place over time.
+    /// Draws readings, force and position over time with Matplotlib.
     ///
-    /// With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+    /// - `axes`: three axes to draw in; new ones unless given.
+    ///
+    /// Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+    /// Matplotlib, and `Error` for another number of axes.
     #[pyo3(signature = (axes=None))]
     fn plot<'py>(result: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         plot(result.py(), "followed", (result, axes))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -256,7 +270,7 @@ impl Kept for Followed {
     }
 }
 
-/// What the taxels read, in their order, kPa.
+/// Pressures at the ports of the taxels, in their order, kPa.
 pub(crate) fn readings_kpa(frame: &FollowedFrame, taxels: &[String]) -> Vec<f64> {
     taxels.iter().map(|taxel| frame.pressure_kpa[taxel]).collect()
 }

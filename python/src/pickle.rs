@@ -1,4 +1,4 @@
-//! What `pickle` and `copy` keep of a value, and what they say of what they cannot keep.
+//! State of values for `pickle` and `copy`, and errors of classes without it.
 
 use pyo3::PyTypeInfo;
 use pyo3::exceptions::PyTypeError;
@@ -9,22 +9,23 @@ use serde::de::DeserializeOwned;
 
 use crate::error::unusable;
 
-/// A value that can be made again of what is kept of it, to the last bit.
+/// A value that can be restored from its state, to the last bit.
 pub(crate) trait Kept: Sized {
-    /// What is kept.
+    /// The state.
     type State: Serialize + DeserializeOwned;
 
-    /// What is to be kept.
+    /// Returns the state.
     fn state(&self, py: Python<'_>) -> PyResult<Self::State>;
 
-    /// The value, made of it.
+    /// Restores the value from its state.
     fn restored(py: Python<'_>, state: Self::State) -> PyResult<Self>;
 }
 
-/// The function that makes a value again, and its arguments: the name of the class, and what is kept.
+/// The function that restores a value, and its arguments: the name of the class, and the state as
+/// bytes.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, (String, Bound<'py, PyBytes>));
 
-/// What `__reduce__` returns.
+/// The result of `__reduce__`.
 pub(crate) fn reduced<'py, T: Kept + PyTypeInfo>(py: Python<'py>, value: &T) -> PyResult<Reduced<'py>> {
     let class = T::type_object(py).name()?.to_string();
     let mut bytes = Vec::new();
@@ -34,7 +35,7 @@ pub(crate) fn reduced<'py, T: Kept + PyTypeInfo>(py: Python<'py>, value: &T) -> 
     Ok((restore, (class, PyBytes::new(py, &bytes))))
 }
 
-/// A value of what `reduced` kept.
+/// Restores a value from the state that [`reduced`] wrote.
 pub(crate) fn restored<T: Kept>(py: Python<'_>, class: &str, bytes: &[u8]) -> PyResult<T> {
     let state = ciborium::from_reader(bytes);
     let state = state.map_err(|error| {
@@ -44,7 +45,7 @@ pub(crate) fn restored<T: Kept>(py: Python<'_>, class: &str, bytes: &[u8]) -> Py
     T::restored(py, state)
 }
 
-/// What `__reduce__` of a class raises whose objects are not values.
+/// The exception of `__reduce__` in classes whose objects cannot be pickled.
 pub(crate) fn refused<T>(class: &str, remedy: &str) -> PyResult<T> {
     let text = format!("a twintac.{class} can't be pickled or copied: {remedy}");
     Err(PyTypeError::new_err(text))

@@ -3,7 +3,7 @@
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 
-/// Draws a result, and returns its axes.
+/// Plots a result, and returns its axes.
 pub(crate) fn plot<'py>(
     py: Python<'py>,
     what: &str,

@@ -1,10 +1,11 @@
-//! Threads that work in parallel. A forked process has none of those of the process before: each makes its own when it first needs them.
+//! Threads for parallel work. A forked process has none of its parent's threads: each process makes
+//! its own when it first needs them.
 
 use std::sync::OnceLock;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The threads of a process, and those of one that was forked from it.
+/// The threads of a process, and those of a process that was forked from it.
 struct Pool {
     process: u32,
     threads: ThreadPool,
@@ -13,13 +14,15 @@ struct Pool {
 
 static FIRST: OnceLock<Box<Pool>> = OnceLock::new();
 
-/// Does work, whose parallel parts are done by threads of this process. All that may work in parallel is done here: threads of all of Rust, which are made
-/// once for all, are gone in a forked process, and who waits for them waits for ever. Nothing that another thread may want is to be locked in `work`.
+/// Does work whose parallel parts run on threads of this process. All parallel work has to run
+/// here: the global threads of rayon are made only once and do not exist in a forked process, which
+/// would wait for them forever. `work` must not lock anything that another thread may need.
 pub(crate) fn in_parallel<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     own(std::process::id()).install(work)
 }
 
-/// No lock is held while threads are made: another thread may fork meanwhile.
+/// The pool of a process. No lock is held while threads are made, because another thread may fork
+/// meanwhile.
 fn own(process: u32) -> &'static ThreadPool {
     let mut place = &FIRST;
     loop {
@@ -34,7 +37,7 @@ fn own(process: u32) -> &'static ThreadPool {
                     process,
                     threads,
                     of_fork,
-                })); // or another thread's were made first
+                })); // or another thread was faster
             }
         }
     }

@@ -7,15 +7,17 @@ use crate::error::unusable;
 use crate::given::{Array, Given};
 use crate::pickle::{Kept, Reduced, reduced};
 
-/// How far a quaternion's length may be from 1.
+/// Largest accepted difference of a quaternion's length from 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
 const NO_TURN: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A rigid transform from an inner frame to an outer one, such as from an indenter's frame to the gel's.
+/// A pose: the rigid transform from an inner frame of reference to an outer one, such as from an
+/// indenter's frame to the gel's.
 ///
 /// - `position_mm`: origin of the inner frame in the outer one, mm.
-/// - `quaternion`: rotation from the inner to the outer frame, `(x, y, z, w)`, of length 1; none unless given.
+/// - `quaternion`: rotation from the inner to the outer frame, `(x, y, z, w)`, of length 1; no
+///   rotation unless given.
 ///
 /// Raises `Error` for numbers that are not finite, and for a quaternion of another length.
 #[pyclass(frozen, eq, from_py_object, module = "twintac")]
@@ -56,7 +58,7 @@ impl Pose {
         self.pose.rotation.into()
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -82,7 +84,8 @@ impl Kept for Pose {
     }
 }
 
-/// Poses, `[n_poses, 7]`: place in mm and quaternion `(x, y, z, w)`; or `[n_poses, 3]`, places of what is not turned.
+/// Poses, `[n_poses, 7]`: position in mm and quaternion `(x, y, z, w)`; or `[n_poses, 3]`:
+/// positions without rotation.
 pub(crate) fn poses(py: Python<'_>, field: &str, rows: &Given<'_>) -> PyResult<Vec<twintac::Pose>> {
     let expected = "[n, 7], place in mm and quaternion (x, y, z, w), or [n, 3], the place alone";
     let rows: Array<2> = rows.numbers(field, expected)?;
@@ -98,7 +101,7 @@ pub(crate) fn poses(py: Python<'_>, field: &str, rows: &Given<'_>) -> PyResult<V
     rows.rows().map(pose).collect()
 }
 
-/// The pose, if it is one.
+/// A pose, if the numbers are finite and the quaternion has length 1.
 pub(crate) fn checked(
     py: Python<'_>,
     position_mm: [f64; 3],

@@ -1,4 +1,4 @@
-//! Presses as they are asked for.
+//! Planned presses.
 
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use crate::error::unusable;
 use crate::given::Given;
 use crate::pickle::{Kept, Reduced, reduced};
 
-/// Largest depth, and farthest place, mm.
+/// Largest depth, and largest distance from the middle, mm.
 const LARGEST_MM: f64 = 1000.0;
 
 /// Longest hold, s.
@@ -19,23 +19,25 @@ const SLOWEST_MM_PER_S: f64 = 1e-3;
 /// A straight press: down to a depth, a hold, and back up.
 ///
 /// - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
-/// - `at_mm`: place of the indenter's origin in the gel's plane, mm; the middle of the gel unless given.
+/// - `at_mm`: location of the indenter's origin in the gel's plane, x and y, mm; the middle of the
+///   gel unless given.
 /// - `depth_mm`: depth below first touch, mm, above 0.
-/// - `spin_rad`: turn of the indenter about the axis of the press, radians.
+/// - `spin_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
 /// - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
-/// - `hold_s`: time at full depth, s, an hour at most.
+/// - `hold_s`: time at full depth, s, at most an hour.
 ///
-/// Raises `Error`, whose `field` is the argument that cannot be. Whether the sensor has the indenter is seen when it presses.
+/// Raises `Error` for a value that is not allowed; its `field` names the argument. Whether the
+/// sensor has the indenter is checked when the gel is pressed.
 #[pyclass(frozen, eq, get_all, from_py_object, module = "twintac")]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Press {
     /// Name of one of the sensor's indenters.
     indenter: String,
-    /// Place of the indenter's origin in the gel's plane, x and y, mm.
+    /// Location of the indenter's origin in the gel's plane, x and y, mm.
     at_mm: (f64, f64),
     /// Depth below first touch, mm.
     depth_mm: f64,
-    /// Turn of the indenter about the axis of the press, radians.
+    /// Yaw (rotation of the indenter about the axis of the press), radians.
     spin_rad: f64,
     /// Speed down and up, mm/s.
     speed_mm_per_s: f64,
@@ -93,7 +95,7 @@ impl Press {
         })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

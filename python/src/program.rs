@@ -1,4 +1,4 @@
-//! This package as the program that runs are worked on with.
+//! This package as the program that does the work of runs.
 
 use std::path::PathBuf;
 
@@ -8,21 +8,22 @@ use twintac_cli::Program;
 
 use crate::error::OrRaise;
 
-/// The package's own file, which tells one build from another, and what Python was started with.
+/// The package's own file, which identifies the build, and Python's arguments.
 fn program(py: Python<'_>) -> PyResult<Program> {
     let file: PathBuf = py.import("twintac._twintac")?.getattr("__file__")?.extract()?;
     let arguments = py.import("sys")?.getattr("argv")?.extract()?;
     Ok(Program { file, arguments })
 }
 
-/// Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input, 3 if a bench was stopped safely.
+/// Runs the command line (`sys.argv`) as the command `twintac` does. Returns the exit code: 0 on
+/// success, 2 for bad input, 3 if a test setup was stopped safely.
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>) -> PyResult<u8> {
     let program = program(py)?;
     Ok(py.detach(|| program.run()))
 }
 
-/// This package, for runs whose work nobody follows.
+/// This package, for runs without progress reports.
 pub(crate) fn caller(py: Python<'_>) -> PyResult<Caller> {
     let Program { file, arguments } = program(py)?;
     let words: Vec<_> = arguments.iter().map(|word| word.to_string_lossy()).collect();

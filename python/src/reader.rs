@@ -1,4 +1,4 @@
-//! A sensor that is being read.
+//! Reading a sensor.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,21 +15,23 @@ use crate::long_call::long_call;
 use crate::pickle::{Kept, Reduced, reduced, refused};
 use crate::sensor::Sensor;
 
-/// How long Ctrl-C and `close` may wait to be heard.
+/// Longest delay before Ctrl-C and `close` are handled.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Reads a sensor frame by frame: on an I²C bus of Linux (`Reader.open`), over a serial port (`Reader.serial`), from datagrams (`Reader.udp`), out of a log
-/// (`Reader.replay`), or an emulated one (`Reader.emulated`).
+/// Reads a sensor frame by frame: on an I²C bus of Linux (`Reader.open`), over a serial port
+/// (`Reader.serial`), from UDP datagrams (`Reader.udp`), from a log (`Reader.replay`), or an
+/// emulated sensor (`Reader.emulated`).
 ///
-/// It reads on a thread of its own, from when it is made until `close` or the end of a `with` block. Iterating gives a `Reading` for each frame, as they come; up to 256
-/// frames wait for whom is late, more are missed. Other threads run meanwhile, and Ctrl-C ends the wait for a frame.
+/// The sensor is read on a thread of its own until `close` or the end of a `with` block. Iteration
+/// returns a `Reading` for each frame as it comes. Up to 256 frames wait for a slow caller; more
+/// are missed. Other Python threads run during the wait for a frame, and Ctrl-C ends it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Reader {
-    /// None once it is closed.
+    /// `None` after it was closed.
     reader: Mutex<Option<twintac::Reader>>,
-    /// The process whose thread reads: one that is forked from it has none.
+    /// The process whose thread reads. A forked process has no such thread.
     process: u32,
-    /// Tells threads that wait for a frame to let go of it.
+    /// Tells threads that wait for a frame to release the reader.
     is_closed: AtomicBool,
     provenance: String,
     taxels: Vec<String>,
@@ -58,10 +60,16 @@ impl Reader {
 
 #[pymethods]
 impl Reader {
-    /// Reads the sensor on a bus such as `/dev/i2c-1`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of its barometers,
-    /// confirmed by who knows the parts; the description's unless given. Takes half a second; Ctrl-C ends the wait.
+    /// Reads a sensor on an I²C bus. The call takes half a second; Ctrl-C ends the wait. Nothing
+    /// may touch the sensor during the call, because the first frames make the tare.
     ///
-    /// Raises `Error` for a bus that cannot be opened, and a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
+    /// - `bus`: path of the bus, such as `/dev/i2c-1`.
+    /// - `sensor`: the sensor.
+    /// - `counts_per_pa`: scale of the barometers, counts per Pa, confirmed by a person who knows
+    ///   the parts; that of the description unless given.
+    ///
+    /// Raises `Error` for a bus that cannot be opened, for a sensor that does not answer or does
+    /// not read the pressure of free air, and for barometers whose scale nobody has confirmed.
     #[staticmethod]
     #[pyo3(signature = (bus, sensor, *, counts_per_pa=None))]
     fn open(
@@ -78,11 +86,16 @@ impl Reader {
         })
     }
 
-    /// Reads the frames that a microcontroller writes to a serial port such as `/dev/ttyACM0` or `COM3`. `line` is a file (TOML) that says how frames stand on the
-    /// line. Nothing may touch the sensor meanwhile: the first frames make the tare.
+    /// Reads the frames that a microcontroller writes to a serial port. Nothing may touch the
+    /// sensor during the call, because the first frames make the tare.
     ///
-    /// Raises `Error` for a port that cannot be opened, a description that is wrong or of another number of taxels, and a line on which no frame comes for 3 s; the
-    /// message says what came instead.
+    /// - `port`: name of the port, such as `/dev/ttyACM0` or `COM3`.
+    /// - `line`: path of the line description (TOML), which says how to read the frames.
+    /// - `sensor`: the sensor.
+    ///
+    /// Raises `Error` for a port that cannot be opened, for a line description that is wrong or of
+    /// another number of taxels, and for a line on which no frame comes for 3 s. The message says
+    /// what came instead.
     #[staticmethod]
     fn serial(py: Python<'_>, port: String, line: PathBuf, sensor: &Sensor) -> PyResult<Self> {
         Self::start(py, sensor, move |sensor| {
@@ -90,7 +103,11 @@ impl Reader {
         })
     }
 
-    /// Reads frames that come as datagrams (UDP) to an address of this computer, such as `"0.0.0.0:9000"`. `line` is a file (TOML) that says how frames stand in them.
+    /// Reads frames from datagrams (UDP).
+    ///
+    /// - `address`: an address of this computer, such as `"0.0.0.0:9000"`.
+    /// - `line`: path of the line description (TOML), which says how to read the frames.
+    /// - `sensor`: the sensor.
     ///
     /// Raises `Error` as `serial` does.
     #[staticmethod]
@@ -100,15 +117,23 @@ impl Reader {
         })
     }
 
-    /// Plays the frames of a log (MCAP) at their own pace; they are what the log says: `"real"` or `"emulated"`. After the last one `read` raises `Error`.
+    /// Replays the frames of a log (MCAP) at their own pace. Their provenance is that of the log:
+    /// `"real"` or `"emulated"`. After the last frame `read` raises `Error`.
     ///
-    /// Raises `Error` for a log that cannot be read, has no frames, or is of other taxels than the sensor's.
+    /// - `log`: path of the log.
+    /// - `sensor`: the sensor.
+    ///
+    /// Raises `Error` for a log that cannot be read, has no frames, or is of other taxels than
+    /// those of the sensor.
     #[staticmethod]
     fn replay(py: Python<'_>, log: PathBuf, sensor: &Sensor) -> PyResult<Self> {
         Self::start(py, sensor, move |sensor| twintac::Reader::replay(log, sensor))
     }
 
-    /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about. Takes half a second; Ctrl-C ends the wait.
+    /// Reads an emulated sensor in real time: registers on an emulated bus, while a ball that
+    /// wanders about presses the gel. The call takes half a second; Ctrl-C ends the wait.
+    ///
+    /// - `sensor`: the sensor.
     ///
     /// Raises `Error` for a sensor whose description does not say how its taxels are wired.
     #[staticmethod]
@@ -116,7 +141,7 @@ impl Reader {
         Self::start(py, sensor, twintac::Reader::emulated)
     }
 
-    /// Where the readings come from: `"real"` or `"emulated"`.
+    /// Provenance of the readings: `"real"` or `"emulated"`.
     #[getter]
     fn provenance(&self) -> &str {
         &self.provenance
@@ -128,13 +153,14 @@ impl Reader {
         self.taxels.clone()
     }
 
-    /// What was odd when the sensor was switched on, a sentence each.
+    /// Remarks from when the sensor was switched on, one sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
     }
 
-    /// What was on the wire so far besides frames, and how often: torn lines, missing frames. Empty if all was well, and of a reader that is closed.
+    /// Remarks about what came on the connection so far besides frames, with counts: incomplete
+    /// lines, missing frames. Empty if there was nothing else, and for a reader that is closed.
     fn remarks(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| {
             let reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
@@ -142,10 +168,13 @@ impl Reader {
         })
     }
 
-    /// Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile: the next
-    /// frames make a new tare.
+    /// Compensates the readings for the drift of the zeros with temperature. Nothing may touch the
+    /// sensor during the call, because the next frames make a new tare.
     ///
-    /// Raises `Error` for a file that is wrong, or of another sensor, and for a reader that is closed.
+    /// - `temperature`: path of a file (TOML) that `twintac characterize` made.
+    ///
+    /// Raises `Error` for a file that is wrong or of another sensor, and for a reader that is
+    /// closed.
     fn compensate(&self, py: Python<'_>, temperature: PathBuf) -> PyResult<()> {
         let compensated = py.detach(|| {
             let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
@@ -157,8 +186,9 @@ impl Reader {
         }
     }
 
-    /// How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures, and of a reader that is closed. Zeros
-    /// move with it.
+    /// Temperature change since the tare of the chip that changed most, K; negative if it is
+    /// colder; `None` without temperatures, and for a reader that is closed. Zeros drift with
+    /// temperature.
     fn warmer_k(&self, py: Python<'_>) -> Option<f64> {
         py.detach(|| {
             let reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
@@ -166,19 +196,21 @@ impl Reader {
         })
     }
 
-    /// The next frame.
+    /// Waits for the next frame and returns it.
     ///
-    /// Raises `Error` for a sensor that has failed for 2 s on end or was silent for 3 s, and for a reader that is closed.
+    /// Raises `Error` for a sensor that has failed for 2 s without a break or was silent for 3 s,
+    /// and for a reader that is closed.
     fn read(&self, py: Python<'_>) -> PyResult<Reading> {
         self.next(py)?
             .ok_or_else(|| unusable(py, "reader", "is closed, or has played its last frame"))
     }
 
-    /// Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing.
+    /// Stops reading, within a second even if the bus hangs. A closed reader cannot read again.
+    /// Closing it again does nothing.
     fn close(&self, py: Python<'_>) {
         self.is_closed.store(true, Ordering::Relaxed);
         if std::process::id() != self.process {
-            return; // the thread that reads is the other process's
+            return; // the reading thread belongs to the other process
         }
         py.detach(|| drop(self.reader.lock().unwrap_or_else(PoisonError::into_inner).take()));
     }
@@ -191,18 +223,18 @@ impl Reader {
         self.next(py)
     }
 
-    /// The reader itself.
+    /// Returns the reader itself.
     fn __enter__(reader: Bound<'_, Self>) -> Bound<'_, Self> {
         reader
     }
 
-    /// Ends the reading.
+    /// Closes the reader.
     #[pyo3(signature = (*_error))]
     fn __exit__(&self, py: Python<'_>, _error: &Bound<'_, pyo3::types::PyTuple>) {
         self.close(py);
     }
 
-    /// What reads is no value.
+    /// Raises `TypeError`: a `Reader` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "Reader",
@@ -216,7 +248,7 @@ impl Reader {
 }
 
 impl Reader {
-    /// The next frame; none of a reader that is closed.
+    /// The next frame; `None` from a reader that is closed.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Reading>> {
         if std::process::id() != self.process {
             let problem = "was opened by the process before this one was forked, and reads there: open one in this process";
@@ -243,21 +275,21 @@ impl Reader {
     }
 }
 
-/// A frame of a sensor: what `Reader.read` returns.
+/// A frame of a sensor: the result of `Reader.read`.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Reading {
     frame: Frame,
-    /// Where the readings come from: `"real"` or `"emulated"`.
+    /// Provenance of the readings: `"real"` or `"emulated"`.
     #[pyo3(get)]
     provenance: String,
 }
 
-/// What a frame says.
+/// The content of a frame.
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Frame {
     sequence: u64,
     time_s: f64,
-    /// `[n_taxels]`, as are the other lists.
+    /// `[n_taxels]`, like the other lists.
     readings_kpa: Vec<Option<f64>>,
     faults: Vec<Option<String>>,
     temperatures_c: Vec<Option<f64>>,
@@ -291,43 +323,47 @@ impl Kept for Reading {
 
 #[pymethods]
 impl Reading {
-    /// Its number, from 0, of all frames that were asked of the sensor: numbers that are missing were missed, or the bus gave none. The first ones made the tare.
+    /// Number of the frame, from 0, among all frames that were requested from the sensor. Missing
+    /// numbers are frames that were missed or that the bus did not deliver. The first frames made
+    /// the tare.
     #[getter]
     fn sequence(&self) -> u64 {
         self.frame.sequence
     }
 
-    /// When the taxels were triggered, s since the sensor was switched on.
+    /// Time at which the taxels were triggered, s since the sensor was switched on.
     #[getter]
     fn time_s(&self) -> f64 {
         self.frame.time_s
     }
 
-    /// Readings above what the taxels read untouched, kPa, `[n_taxels]`; NaN of a taxel that gives no usable one.
+    /// Readings above those of the untouched sensor, kPa; `[n_taxels]`. NaN for a taxel without a
+    /// usable reading.
     #[getter]
     fn readings_kpa<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         or_nan(py, &self.frame.readings_kpa)
     }
 
-    /// Whether each taxel's reading can be used; `[n_taxels]`.
+    /// Whether each taxel's reading is usable; `[n_taxels]`.
     #[getter]
     fn is_valid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         PyArray1::from_iter(py, self.frame.readings_kpa.iter().map(Option::is_some))
     }
 
-    /// Why a taxel's reading cannot be used, in a word or two, `[n_taxels]`; `None` of a taxel that works.
+    /// Why a taxel's reading is not usable, in a word or two; `[n_taxels]`. `None` for a taxel that
+    /// works.
     #[getter]
     fn faults(&self) -> Vec<Option<String>> {
         self.frame.faults.clone()
     }
 
-    /// Temperatures of the barometers, °C, `[n_taxels]`; NaN of one that gives none.
+    /// Temperatures of the barometers, °C; `[n_taxels]`. NaN for one without a temperature.
     #[getter]
     fn temperatures_c<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         or_nan(py, &self.frame.temperatures_c)
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

@@ -16,7 +16,7 @@ use crate::plot::plot;
 use crate::sensor::Sensor;
 use crate::settings::to_python;
 
-/// Where numbers come from: `"real"`, `"emulated"` or `"simulated"`.
+/// Provenance of numbers: `"real"`, `"emulated"` or `"simulated"`.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Provenance(twintac::Provenance);
@@ -41,11 +41,12 @@ impl<'py> FromPyObject<'_, 'py> for Provenance {
     }
 }
 
-/// Recorded presses of one sensor: of a real one, of an emulated one, or simulated. `len()` is the number of presses.
+/// Recorded presses of one sensor: a real or an emulated one, or simulated presses. `len()` is the
+/// number of presses.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Recording {
     pub(crate) recording: twintac::Recording,
-    /// What was found in CSV files and left out of them; nothing where it comes from elsewhere.
+    /// What was found in CSV files and left out of them; empty for other sources.
     imported: ImportSummary,
 }
 
@@ -58,18 +59,23 @@ impl From<twintac::Recording> for Recording {
 
 #[pymethods]
 impl Recording {
-    /// Reads a Parquet file, as runs and `save` write it. Ctrl-C ends the wait.
+    /// Reads a Parquet file that a run or `save` wrote. Ctrl-C ends the wait.
     ///
-    /// Raises `Error` with the file if it is no recording, is damaged, or cannot be read.
+    /// Raises `Error` with the file if it is not a recording, is damaged, or cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let recording = long_call(py, move || twintac::Recording::read_parquet(&path))?.or_raise(py)?;
         Ok(recording.into())
     }
 
-    /// Reads CSV files of any laboratory. The description (TOML, see the folder `imports`) says which column is what, in which unit. Ctrl-C ends the wait.
+    /// Reads CSV files of any laboratory. Ctrl-C ends the wait.
     ///
-    /// Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
+    /// - `description`: path of the import description (TOML, see the folder `imports`), which says
+    ///   what each column means, and its unit.
+    /// - `paths`: paths of the CSV files.
+    ///
+    /// Raises `Error` with file, line and field: of the import description, or of the cell that
+    /// cannot be read.
     #[staticmethod]
     #[pyo3(signature = (description, *paths))]
     fn import_csv(py: Python<'_>, description: PathBuf, paths: Vec<PathBuf>) -> PyResult<Self> {
@@ -78,7 +84,11 @@ impl Recording {
         Ok(Self { recording, imported })
     }
 
-    /// A first description of a CSV file's columns, for `import_csv`: the text of a TOML file with a comment on each guess.
+    /// Guesses an import description of a CSV file, for `import_csv`.
+    ///
+    /// - `path`: path of the CSV file.
+    ///
+    /// Returns the text of a TOML file, with a comment on each guess.
     ///
     /// Raises `Error` with the file if it cannot be read or has no rows of numbers.
     #[staticmethod]
@@ -86,20 +96,22 @@ impl Recording {
         guess_import(&path).or_raise(py)
     }
 
-    /// What `import_csv` found in each file and left out of it, a dict for each: `file`, `rows_read`, `rows_dropped`, `rows_incomplete`, `missing_readings`,
-    /// `clipped_readings`, `outliers`, `presses`, `presses_dropped`, `shared_frames`, `unread_columns`, `warnings`. Empty for recordings from elsewhere.
+    /// What `import_csv` found in each file and left out of it: for each file a dict with `file`,
+    /// `rows_read`, `rows_dropped`, `rows_incomplete`, `missing_readings`, `clipped_readings`,
+    /// `outliers`, `presses`, `presses_dropped`, `shared_frames`, `unread_columns`, `warnings`.
+    /// Empty for other recordings.
     #[getter]
     fn imported<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.imported.files)
     }
 
-    /// Name of the sensor, as its description has it.
+    /// Name of the sensor in its description.
     #[getter]
     fn sensor(&self) -> &str {
         &self.recording.sensor
     }
 
-    /// Where the numbers come from: `"real"`, `"emulated"` or `"simulated"`.
+    /// Provenance of the numbers: `"real"`, `"emulated"` or `"simulated"`.
     #[getter]
     fn provenance(&self) -> String {
         self.recording.provenance.to_string()
@@ -117,13 +129,16 @@ impl Recording {
         self.recording.presses.iter().map(|press| &*press.name).collect()
     }
 
-    /// A NumPy array for each column of the Parquet file, with a value for each frame:
+    /// The columns of the Parquet file as NumPy arrays, by name, with a value for each frame:
     ///
-    /// - `press_index`, `press`, `mounting`, `indenter`, `control`, `provenance`: of the press, the same in all its frames;
-    /// - `time_s`: time, s;
-    /// - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame, mm, and a quaternion;
-    /// - `force_n`: force into the gel, N; NaN where it is not known;
-    /// - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable. A reading that did not come is NaN.
+    /// - `press_index`, `press`, `mounting`, `indenter`, `control`, `provenance`: properties of the
+    ///   press, the same in all its frames. `mounting` is the installation of the indenter.
+    /// - `time_s`: time, s.
+    /// - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame:
+    ///   position, mm, and quaternion.
+    /// - `force_n`: force into the gel, N; NaN if it is not known.
+    /// - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: reading of the taxel, kPa; the reading as
+    ///   it was recorded; whether it is usable. A missing reading is NaN.
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
         for (name, column) in self.recording.columns() {
@@ -138,14 +153,18 @@ impl Recording {
             .call_method1("DataFrame", (self.columns(py)?,))
     }
 
-    /// The columns as a `polars.DataFrame`, through Arrow: what `polars.DataFrame(recording)` does.
+    /// The columns as a `polars.DataFrame`, through Arrow. `polars.DataFrame(recording)` does the
+    /// same.
     fn to_polars<'py>(recording: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let polars = recording.py().import("polars")?;
         polars.call_method1("DataFrame", (recording,))
     }
 
-    /// The columns for whatever reads Arrow by its PyCapsule interface: `polars.DataFrame(recording)`, `pyarrow.table(recording)`, `pandas.DataFrame.from_arrow(recording)`, or DuckDB.
-    /// Types are those of `columns`, texts are strings, and a force that is not known and a reading that did not come are null. No other schema is given, whatever `requested_schema` is.
+    /// The columns for any library that reads Arrow through its PyCapsule interface:
+    /// `polars.DataFrame(recording)`, `pyarrow.table(recording)`,
+    /// `pandas.DataFrame.from_arrow(recording)`, or DuckDB. Types are those of `columns`. Texts are
+    /// strings. An unknown force and a missing reading are null. The schema is always this one;
+    /// `requested_schema` is ignored.
     #[pyo3(signature = (requested_schema=None))]
     fn __arrow_c_stream__<'py>(
         &self,
@@ -158,17 +177,23 @@ impl Recording {
         PyCapsule::new_with_value(py, stream, STREAM)
     }
 
-    /// Writes a Parquet file, whole or not at all.
+    /// Writes a Parquet file. The file appears whole or not at all.
     ///
     /// Raises `Error` with the file if it cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.recording.write_parquet(&path)).or_raise(py)
     }
 
-    /// Writes a LeRobot data set, version 3.0, into a folder that is not there yet: presses are episodes, indenters are tasks. `how_made` is put into its data card.
-    /// Returns the numbers of episodes, frames and tasks, frames a second (`fps`), and the rate that they were resampled from, Hz (`resampled_from_hz`; `None` if they came evenly).
+    /// Writes a LeRobot data set, version 3.0: presses are episodes, indenters are tasks.
     ///
-    /// Raises `Error` for a folder that is there, or cannot be written.
+    /// - `folder`: path of a folder that does not exist yet.
+    /// - `how_made`: text for the data card that says how the data were made.
+    ///
+    /// Returns the numbers of episodes, frames and tasks (`episodes`, `frames`, `tasks`), the
+    /// frames per second (`fps`), and the rate from which frames were resampled, Hz
+    /// (`resampled_from_hz`; `None` if they were evenly spaced).
+    ///
+    /// Raises `Error` for a folder that exists or cannot be written.
     #[pyo3(signature = (folder, *, how_made=""))]
     fn save_lerobot<'py>(
         &self,
@@ -180,8 +205,14 @@ impl Recording {
         to_python(py, &written.or_raise(py)?)
     }
 
-    /// What the sensor does, as far as the presses tell: sensitivity, noise, hysteresis and more, as `twintac characterize --json` says it.
-    /// With a folder, the report and the data sheet are written into it. Figures that the presses do not show have the reason in their place. Ctrl-C ends the wait.
+    /// Characterizes the sensor from the presses: sensitivity, noise, hysteresis and other figures.
+    /// Ctrl-C ends the wait.
+    ///
+    /// - `sensor`: the sensor.
+    /// - `folder`: folder for the report and the data sheet; without it, they are not written.
+    ///
+    /// Returns the figures as `twintac characterize --json` prints them. A figure that the presses
+    /// do not show is replaced by the reason.
     ///
     /// Raises `Error` for a sensor whose taxels are not those of the recording.
     #[pyo3(signature = (sensor, folder=None))]
@@ -204,9 +235,14 @@ impl Recording {
         to_python(py, &found.or_raise(py)?)
     }
 
-    /// Draws one press, counted from 0, over time: readings that are usable, force and height of the indenter.
+    /// Draws one press over time with Matplotlib: usable readings, force and height of the
+    /// indenter.
     ///
-    /// With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for a press that is not there or another number of axes.
+    /// - `press`: index of the press, from 0.
+    /// - `axes`: three axes to draw in; new ones unless given.
+    ///
+    /// Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+    /// Matplotlib, and `Error` for a press that does not exist or another number of axes.
     #[pyo3(signature = (press=None, axes=None), text_signature = "($self, press=0, axes=None)")]
     fn plot<'py>(
         result: &Bound<'py, Self>,
@@ -216,7 +252,7 @@ impl Recording {
         plot(result.py(), "recording", (result, press, axes))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

@@ -1,4 +1,4 @@
-//! Values made again of what a pickle has kept.
+//! Restores pickled values.
 
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ use crate::shape::{Body, Shape};
 use crate::table::ReadingTable;
 use crate::twin::{Prediction, Twin};
 
-/// Makes a value of what a pickle has kept of it.
+/// Restores a pickled object from its class name and its state.
 #[pyfunction]
 pub(crate) fn _restored(py: Python<'_>, class: &str, state: &[u8]) -> PyResult<Py<PyAny>> {
     match class {

@@ -1,4 +1,4 @@
-//! Runs: from recordings to a judged twin.
+//! Runs: from recordings to an evaluated twin.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,16 +16,18 @@ use crate::recording::Recording;
 use crate::sensor::Sensor;
 use crate::settings::{but, to_python};
 
-/// A folder in which recordings become a judged twin and a report. What is done is kept: the same again does only what is missing.
+/// A folder in which recordings become an evaluated twin and a report. Finished stages are kept: a
+/// call with the same inputs does only what is missing.
 ///
-/// `start`, `import_csv` and `finish` make one, `demo` makes one without data, `open` opens one that is there.
+/// `start`, `import_csv` and `finish` make a run, `demo` makes one without data, and `open` opens
+/// an existing one.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Run {
     run: twintac::Run,
 }
 
 impl Run {
-    /// Does something with the run while `progress` follows.
+    /// Does work on the run and reports to `progress`.
     fn work<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -39,11 +41,18 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    /// Starts a run, or takes up the one that the folder holds with new settings. `source` says in words where the presses come from. `settings`
-    /// has those that differ from the usual ones, with a dictionary for each stage: `{"train": {"epochs": 40}}`. The same recordings, settings and `seed` give the
-    /// same twin.
+    /// Starts a run, or continues the one in the folder with new settings. The same recordings,
+    /// settings and `seed` give the same twin.
     ///
-    /// Raises `Error`, whose `field` is the setting that cannot be, and for a folder that cannot be written.
+    /// - `folder`: path of the folder.
+    /// - `sensor`: the sensor.
+    /// - `source`: a text that says where the presses come from.
+    /// - `seed`: seed of all random choices.
+    /// - `settings`: settings that differ from the default ones, with a dictionary for each stage:
+    ///   `{"train": {"epochs": 40}}`.
+    ///
+    /// Raises `Error` for a setting that is not allowed (its `field` names the setting), and for a
+    /// folder that cannot be written.
     #[staticmethod]
     #[pyo3(signature = (folder, sensor, source, *, seed=None, settings=None), text_signature = "(folder, sensor, source, *, seed=1, settings=None)")]
     fn start(
@@ -62,16 +71,21 @@ impl Run {
         })
     }
 
-    /// Opens a run that was started.
+    /// Opens an existing run.
     ///
-    /// Raises `Error` for a folder that is no run.
+    /// Raises `Error` for a folder that is not a run.
     #[staticmethod]
     fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         let run = twintac::Run::open(&folder, caller(py)?).or_raise(py)?;
         Ok(Self { run })
     }
 
-    /// Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute. Ctrl-C stops it.
+    /// Starts a demo run, and makes its recordings: PhysTac, pressed on the emulated bench.
+    /// `finish` does the rest. Both together take a minute. Ctrl-C stops the call.
+    ///
+    /// - `folder`: path of the folder.
+    /// - `seed`: seed of all random choices.
+    /// - `progress`: display of the progress, see `Progress`.
     #[staticmethod]
     #[pyo3(signature = (folder, *, seed=None, progress=None), text_signature = "(folder, *, seed=1, progress=None)")]
     fn demo(
@@ -90,18 +104,28 @@ impl Run {
         })
     }
 
-    /// Makes the run's recordings of CSV files of any laboratory, which the description (TOML) says how to read, as `Recording.import_csv` does.
+    /// Makes the recordings of the run from CSV files of any laboratory, as `Recording.import_csv`
+    /// does.
     ///
-    /// Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
+    /// - `description`: path of the import description (TOML), which says how to read the files.
+    /// - `paths`: paths of the CSV files.
+    ///
+    /// Raises `Error` with file, line and field: of the import description, or of the cell that
+    /// cannot be read.
     #[pyo3(signature = (description, *paths))]
     fn import_csv(&self, py: Python<'_>, description: PathBuf, paths: Vec<PathBuf>) -> PyResult<()> {
         self.work(py, None, move |run| run.import(&description, &paths))
     }
 
-    /// Runs all stages after the recordings: simulates, aligns, trains, judges, reports. Returns how well the twin does, as `metrics.json` has it.
-    /// Ctrl-C stops before the next step; the same call goes on from there.
+    /// Runs all stages after the recordings: simulation, alignment, training, evaluation, report.
+    /// Ctrl-C stops the call before the next step; the same call continues from there.
     ///
-    /// Raises `Error` for a run that has no recordings, and for presses that no twin can be trained with.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// Returns the figures of the evaluation, as in `metrics.json`.
+    ///
+    /// Raises `Error` for a run without recordings, and for presses on which no twin can be
+    /// trained.
     #[pyo3(signature = (*, progress=None))]
     fn finish<'py>(
         &self,
@@ -112,9 +136,9 @@ impl Run {
         to_python(py, &metrics)
     }
 
-    /// The presses, as recorded.
+    /// The recorded presses.
     ///
-    /// Raises `Error` for a run that has none yet.
+    /// Raises `Error` for a run without recordings.
     fn recording(&self, py: Python<'_>) -> PyResult<Recording> {
         let recording = py.detach(|| self.run.recording()).or_raise(py)?;
         Ok(recording.into())
@@ -126,18 +150,19 @@ impl Run {
         self.run.folder().to_owned()
     }
 
-    /// The folder of the twin of all presses, which `Twin.load` reads.
+    /// The folder of the twin that was trained on all presses. `Twin.load` reads it.
     #[getter]
     fn model_folder(&self) -> PathBuf {
         self.run.model_folder()
     }
 
-    /// The page that says how well the twin does: `report.html` in the folder. It is there after `finish`.
+    /// Path of the report on the evaluation of the twin: `report.html` in the folder. It exists
+    /// after `finish`.
     #[getter]
     fn report_path(&self) -> PathBuf {
         self.run.report_path()
     }
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }

@@ -1,4 +1,4 @@
-//! Sensors as they are described.
+//! Described sensors.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,9 +11,10 @@ use crate::error::OrRaise;
 use crate::pickle::{Kept, Reduced, reduced};
 use crate::shape::corners_mm;
 
-/// A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
+/// A sensor, as its description says: gel, taxels and indenters.
 ///
-/// `Sensor.phystac()` and `Sensor.phystac_tip()` are built in; `Sensor.load` reads the description of any other.
+/// `Sensor.phystac()` and `Sensor.phystac_tip()` are built in. `Sensor.load` reads the description
+/// of another sensor.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Sensor {
@@ -36,22 +37,23 @@ impl Sensor {
         Ok(Self { sensor })
     }
 
-    /// Reads a description (TOML).
+    /// Reads a sensor description (TOML).
     ///
-    /// Raises `Error` with file, line and field if the description is wrong, and with the file if it cannot be read.
+    /// Raises `Error` with file, line and field if the description is wrong, and with the file if
+    /// it cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let sensor = py.detach(|| twintac::Sensor::read(path)).or_raise(py)?;
         Ok(Self { sensor })
     }
 
-    /// Its name, as the description has it.
+    /// Name of the sensor in its description.
     #[getter]
     fn name(&self) -> &str {
         self.sensor.name()
     }
 
-    /// Names of its taxels, in the order of every row of readings.
+    /// Names of the taxels, in the order of every row of readings.
     #[getter]
     fn taxels(&self) -> Vec<&str> {
         self.sensor.taxels().collect()
@@ -65,7 +67,8 @@ impl Sensor {
         rows(py, positions.collect(), [taxels.len(), 3])
     }
 
-    /// Lowest and highest corner of the box that holds the gel, in the gel's frame, mm; `[2, 3]`.
+    /// Lowest and highest corner of the box that contains the gel, in the gel's frame, mm;
+    /// `[2, 3]`.
     #[getter]
     pub(crate) fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let sensor = &self.sensor.file().sensor;
@@ -73,24 +76,24 @@ impl Sensor {
         rows(py, [low.to_array(), high.to_array()].concat(), [2, 3])
     }
 
-    /// Names of the indenters that it can be pressed with: those that `Press` takes.
+    /// Names of the indenters in the description. `Press` takes one of them.
     #[getter]
     fn indenters(&self) -> Vec<&str> {
         self.sensor.indenters().collect()
     }
 
-    /// Frames that it gives in a second, Hz.
+    /// Frame rate of the sensor, Hz.
     #[getter]
     fn rate_hz(&self) -> f64 {
         self.sensor.file().sensor.readout.rate_hz
     }
 
-    /// All that the description says, with units, as a text for people.
+    /// The whole description, with units, as a text for people.
     fn describe(&self) -> String {
         self.sensor.file().sensor.describe()
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -105,7 +108,8 @@ impl Sensor {
 }
 
 impl Kept for Sensor {
-    /// Where the description lies, its text, and the corners of the triangles of each surface that it names, mm.
+    /// The description's path, its text, and the corners of the triangles of each surface that it
+    /// names, mm.
     type State = (PathBuf, String, BTreeMap<String, Vec<[[f64; 3]; 3]>>);
 
     fn state(&self, _: Python<'_>) -> PyResult<Self::State> {

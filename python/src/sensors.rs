@@ -1,5 +1,6 @@
-//! Many imperfect sensors.
+//! Batches of imperfect sensors.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -20,32 +21,44 @@ use crate::shared::Shared;
 use crate::touches::{Touches, bodies, touch_ids};
 use crate::twin::Twin;
 
-/// Why a coupling needs to know what is what.
+/// Why a coupling needs the identity of each touch.
 const NO_TOUCH_ID: &str = "is missing: sensors with a `coupling` remember each thing that touches them. Give an integer for each touch, the same as long as it is the same thing; \
     `touch_id=body` where each body is one thing";
 
-/// The table of a file in which imperfections stand.
+/// Name of the table of sensor variation in a file.
 const TABLE: &str = "imperfection";
 
-/// How far sensors are from perfect: from what each sensor's own imperfections are drawn.
+/// Sensor variation: the distributions from which each sensor's deviations from a perfect sensor
+/// are drawn.
 ///
-/// Keywords are the fields of `[imperfection]` in a file; each is 0 unless given, and `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of
-/// a normal distribution about zero.
+/// Keywords are the fields of the table `[imperfection]` in a file. Each is 0 unless given;
+/// `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of a normal
+/// distribution about zero.
 ///
-/// - `gain_deviation`: of each taxel's gain, as part of it.
-/// - `growth_deviation_per_kpa`: of how much each taxel's reading grows beyond proportion for each kPa of it, 1/kPa.
-/// - `offset_deviation_kpa`: of each taxel's zero, kPa.
-/// - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: how much all taxels drift with temperature, and the deviation of each beyond that, kPa/K.
-/// - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the tare, K, and the time in which it forgets what it was, s.
-/// - `cross_talk`, `cross_talk_deviation`: part of what each other taxel feels that a taxel reads as well, beyond what the gel spreads, and its deviation from pair to pair.
-/// - `noise_deviation_kpa`: of each reading's noise, kPa.
-/// - `quantum_kpa`: distance of the values that are told apart, kPa.
-/// - `hysteresis`: half of the gap between loading and unloading, as part of the reading, 0 to 1.
-/// - `dead_chance`, `stuck_chance`, `late_chance`: chances, 0 to 1, that a taxel reads zero for ever, stays at its first value, reads a frame late.
-/// - `rate_hz`, `jitter`: frames that the bus delivers in a second, Hz (0: one at each step), and the deviation of the time between them, as part of it.
-/// - `height_deviation_mm`, `place_deviation_mm`, `turn_deviation_rad`, `tilt_deviation_rad`: of how the sensor is mounted, mm and radians.
+/// - `gain_deviation`: deviation of each taxel's gain, as a fraction of the gain.
+/// - `growth_deviation_per_kpa`: deviation of the relative growth of each taxel's gain with its
+///   reading, 1/kPa.
+/// - `offset_deviation_kpa`: deviation of each taxel's zero, kPa.
+/// - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: temperature drift that all taxels share, and
+///   the deviation of each taxel's drift from it, kPa/K.
+/// - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the
+///   tare, K, and the time constant with which the temperature fluctuates, s.
+/// - `cross_talk`, `cross_talk_deviation`: fraction of every other taxel's pressure that a taxel
+///   reads in addition, beyond what the gel spreads, and its deviation from pair to pair.
+/// - `noise_deviation_kpa`: deviation of the noise of each reading, kPa.
+/// - `quantum_kpa`: resolution of the readings, kPa.
+/// - `hysteresis`: half of the gap between loading and unloading, as a fraction of the reading, 0
+///   to 1.
+/// - `dead_chance`, `stuck_chance`, `late_chance`: probabilities, 0 to 1, that a taxel always reads
+///   zero, that it stays at its first reading, and that its readings are late by one frame. Their
+///   sum is at most 1.
+/// - `rate_hz`, `jitter`: frames that the bus delivers in a second, Hz (0: one at each step), and
+///   the deviation of the time between frames, as a fraction of it.
+/// - `height_deviation_mm`, `place_deviation_mm`, `turn_deviation_rad`, `tilt_deviation_rad`:
+///   deviations of the installation of the sensor: height, position, rotation about the vertical
+///   axis, and tilt, mm and radians.
 ///
-/// Raises `Error`, whose `field` is the one that cannot be.
+/// Raises `Error` for a value that is not allowed; its `field` names the keyword.
 #[pyclass(frozen, eq, from_py_object, module = "twintac")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Imperfection {
@@ -65,9 +78,11 @@ impl Imperfection {
         })
     }
 
-    /// Reads a file (TOML) with the table `[imperfection]`, as `twintac fast imperfection` makes them.
+    /// Reads a file (TOML) with the table `[imperfection]`. `twintac fast imperfection` makes such
+    /// files.
     ///
-    /// Raises `Error` with file, line and field if it is wrong.
+    /// Raises `Error` with file, line and field if the file is wrong, and with the file if it
+    /// cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
@@ -77,7 +92,15 @@ impl Imperfection {
         })
     }
 
-    /// What a pickle keeps.
+    /// All fields by name, including those that are 0.
+    fn fields(&self, py: Python<'_>) -> PyResult<BTreeMap<String, f64>> {
+        let mut bytes = Vec::new();
+        let written = ciborium::into_writer(&self.imperfection, &mut bytes);
+        written.map_err(|error| unusable(py, TABLE, &error.to_string()))?;
+        ciborium::from_reader(&bytes[..]).map_err(|error| unusable(py, TABLE, &error.to_string()))
+    }
+
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -99,17 +122,20 @@ impl Kept for Imperfection {
     }
 }
 
-/// How bodies and gels hold each other where bodies move freely: with friction, and with the gel's loss, which lets what hits it come to rest.
+/// The forces between gels and bodies that move freely: friction, and the damping of the gel, which
+/// brings a body that hits it to rest.
 ///
+/// - `sensor`: the sensor.
 /// - `friction`: Coulomb's coefficient of each body on each gel, 0 or more.
-/// - `retardation_s`: time by which the gel's force leads its elastic one, s, as of a Kelvin-Voigt solid: `F + t dF/dt`. 0 for a gel without loss.
+/// - `retardation_s`: time constant `t` of the gel's damping, s. The force is `F + t dF/dt` with
+///   the elastic force `F`, as of a Kelvin-Voigt solid. 0 for a gel without damping.
 ///
-/// Raises `Error`, whose `field` is the number that cannot be.
+/// Raises `Error` for a number that is not allowed; its `field` names the argument.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Coupling {
     coupling: twintac::Coupling,
-    /// Of what it was made.
+    /// The sensor and the coefficient from which it was made.
     sensor: Sensor,
     friction: f64,
 }
@@ -132,7 +158,7 @@ impl Coupling {
         })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -162,18 +188,25 @@ impl Kept for Coupling {
     }
 }
 
-/// Many sensors of one kind, each imperfect in its own way, stepped in one call. Their gels have rested. `len()` is the number of sensors.
+/// Many sensors of one kind, each with its own deviations, stepped in one call. Their gels are at
+/// rest at first. `len()` is the number of sensors.
 ///
-/// - `gel`: the fast gel of all of them.
-/// - `bodies`: what may touch them, at least one.
-/// - `imperfection`: from what each sensor's own imperfections are drawn; perfect sensors unless given.
-/// - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
-/// - `coupling`: how bodies and gels hold each other; neither friction nor loss unless given.
-/// - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
-/// - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
-/// - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
+/// - `gel`: the surrogate of their gel.
+/// - `bodies`: the bodies that may touch them, at least one.
+/// - `n_sensors`: number of sensors, from 1 to as many as give ten million readings: 1,250,000
+///   sensors of eight taxels.
+/// - `imperfection`: the sensor variation from which each sensor's deviations are drawn; perfect
+///   sensors unless given.
+/// - `twin`: the twin whose barometers they have, with its gains and viscoelastic relaxation;
+///   readings are the pressures at the ports unless given.
+/// - `coupling`: the forces between bodies and gels; neither friction nor damping unless given.
+/// - `seed`: seed of the deviations. Sensor `n` is the same for the same seed, whatever the other
+///   sensors are.
+/// - `n_threads`: number of threads, at most 1024; as many as there are cores unless given. Results
+///   do not depend on it.
 ///
-/// Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number that is out of its range.
+/// Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number
+/// out of its range.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct SensorBatch {
     batch: Shared<Batch>,
@@ -185,15 +218,14 @@ pub(crate) struct SensorBatch {
     n_threads: usize,
 }
 
-/// Sensors that hold what touches them, or not.
+/// Sensors without or with forces on freely moving bodies.
 enum Batch {
     Free(twintac::SensorBatch),
     Coupled(twintac::CoupledBatch),
 }
 
-/// What one sensor of a `SensorBatch` is and remembers at a moment: its imperfections and the noise
-/// to come, its twin's memory, and what its gel holds. What `SensorBatch.state`
-/// returns.
+/// The state of one sensor of a `SensorBatch` at a moment: its deviations, the state of its noise,
+/// the relaxation of its twin, and the contacts of its gel. `SensorBatch.state` returns it.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct SensorState {
@@ -206,17 +238,17 @@ impl SensorState {
         format!("<SensorState of {} taxels, simulated>", self.state.n_taxels())
     }
 
-    /// A state goes on where it was taken: the memory of a process.
+    /// Raises `TypeError`: a `SensorState` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         no_pickle("SensorState", "set it back in the process that took it")
     }
 
-    /// It never changes: a copy is itself.
+    /// Returns the object itself, which never changes.
     fn __copy__(slf: Py<Self>) -> Py<Self> {
         slf
     }
 
-    /// It never changes: a copy is itself.
+    /// Returns the object itself, which never changes.
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
@@ -285,14 +317,16 @@ impl SensorBatch {
         })
     }
 
-    /// What every reading is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// Puts other bodies in the place of those that may touch. What gels hold, they go on to hold,
-    /// under the things' `touch_id`.
+    /// Replaces the bodies that may touch the sensors. The gels keep the state of each touch under
+    /// its `touch_id`.
+    ///
+    /// - `bodies`: the new bodies, at least one.
     ///
     /// Raises `Error` if there is no body.
     fn set_bodies(&self, py: Python<'_>, bodies: Vec<Body>) -> PyResult<()> {
@@ -300,19 +334,24 @@ impl SensorBatch {
         self.bodies.look(py, |held| *held = bodies)
     }
 
-    /// One more moment of every sensor, `since_previous_s` after the last. `gel_from_body`, `body`
-    /// and `ends` are those of `FastBatch.read`.
+    /// Computes one more step of every sensor.
     ///
-    /// `touch_id`, an integer for each touch, says which thing it is: the same as long as it is the
-    /// same thing, and another for each other thing on that sensor. A sensor with a `Coupling`
-    /// remembers each thing that touches it under this number, wherever it stands in the list and
-    /// whatever body it has, so it has to be given. What is not in the list is forgotten.
+    /// - `since_previous_s`: time since the last step, s.
+    /// - `gel_from_body`, `body`, `ends`: the touches, as in `FastBatch.read`. Poses are in the
+    ///   frame of the sensor as described.
+    /// - `touch_id`: an integer for each touch, which identifies the touching thing, `[n_touches]`.
+    ///   It is the same as long as it is the same thing, and differs between things on one sensor.
+    ///   Sensors with a `Coupling` need it: they keep the state of each touch under this number,
+    ///   whatever its position in the list and its body. The state of a touch that is not in the
+    ///   list is deleted.
     ///
-    /// Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, in the frame of
-    /// the sensor where it is, `[n_sensors, 6]`.
+    /// Returns the last readings that the bus of each sensor delivered, kPa,
+    /// `[n_sensors, n_taxels]`, and the wrenches, `[n_sensors, 6]`: force on each gel, N, and
+    /// torque about the centre of its top, N mm, in the frame of the sensor as it is installed.
     ///
-    /// Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot
-    /// be, and if a thing touches one sensor twice. Nothing has been done then.
+    /// Raises `Error` for an argument with another shape or with numbers that are not allowed (its
+    /// `field` names the argument), and if a thing touches one sensor twice. The sensors are then
+    /// unchanged.
     #[pyo3(signature = (since_previous_s, gel_from_body, body=None, ends=None, *, touch_id=None))]
     fn step<'py>(
         &self,
@@ -361,7 +400,7 @@ impl SensorBatch {
                     batch.step(since_previous_s, &bodies, &held, &ends, readings_kpa, wrench)
                 }
             };
-            // Nobody has to be woken for one thread.
+            // A single thread needs no pool.
             if self.n_threads > 1 {
                 in_parallel(step)
             } else {
@@ -375,9 +414,9 @@ impl SensorBatch {
         ))
     }
 
-    /// What each thing did in the last step by itself, in the order of the touches: force on the
-    /// gel, N, and torque about the top of its middle, N mm,
-    /// `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
+    /// Wrench of each touch by itself in the last step, in the order of the touches,
+    /// `[n_touches, 6]`: force on the gel, N, and torque about the centre of its top, N mm, in the
+    /// frame of the sensor as described. Without a `Coupling` there are none: `[0, 6]`.
     fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let wrenches: Vec<f32> = self.batch.look(py, |batch| match batch {
             Batch::Free(_) => Vec::new(),
@@ -387,8 +426,30 @@ impl SensorBatch {
         rows(py, wrenches, [n_touches, 6])
     }
 
-    /// What one sensor, counted from 0, is and remembers now: set back, it goes on to the same
-    /// bits.
+    /// How fast each thing slipped over its gel in the last step, mm/s, along x and y of the gel,
+    /// in the order of the touches, `[n_touches, 2]`: 0 while it sticks. Without a `Coupling` there
+    /// are none: `[0, 2]`.
+    fn slip_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let slips: Vec<f32> = self.batch.look(py, |batch| match batch {
+            Batch::Free(_) => Vec::new(),
+            Batch::Coupled(batch) => batch.slip_of_touches().flatten().copied().collect(),
+        })?;
+        let n_touches = slips.len() / 2;
+        rows(py, slips, [n_touches, 2])
+    }
+
+    /// The readings of the last step without sensor variation, kPa, `[n_sensors, n_taxels]`.
+    fn read_ground_truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let readings_kpa: Vec<f32> = self.batch.look(py, |batch| match batch {
+            Batch::Free(batch) => batch.ground_truth_kpa().collect(),
+            Batch::Coupled(batch) => batch.ground_truth_kpa().collect(),
+        })?;
+        rows(py, readings_kpa, [self.n_sensors, self.n_taxels])
+    }
+
+    /// The state of one sensor. A sensor that is set back to it continues with the same bits.
+    ///
+    /// - `sensor`: index of the sensor, from 0.
     fn state(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<SensorState> {
         let sensor = self.number(&sensor)?;
         let state = self.batch.look(py, |batch| match batch {
@@ -400,11 +461,13 @@ impl SensorBatch {
         })
     }
 
-    /// Lets one sensor, counted from 0, go on from a state, of its own or of another sensor of such
-    /// a batch.
+    /// Sets one sensor to a state, its own or that of another sensor of such a batch.
     ///
-    /// Raises `Error` for the state of a sensor with other taxels, or with a twin where this one
-    /// has none.
+    /// - `sensor`: index of the sensor, from 0.
+    /// - `state`: the state.
+    ///
+    /// Raises `Error` for the state of a sensor with another number of taxels, and for one with a
+    /// twin if these sensors have none, or the reverse.
     #[allow(clippy::needless_pass_by_value)] // as Python gives it
     fn set_state(&self, py: Python<'_>, sensor: Given<'_>, state: SensorState) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
@@ -428,7 +491,9 @@ impl SensorBatch {
         })
     }
 
-    /// Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has.
+    /// Resets one sensor to rest until its next step. Its deviations stay.
+    ///
+    /// - `sensor`: index of the sensor, from 0.
     fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
         self.batch.look(py, |batch| match batch {
@@ -437,8 +502,11 @@ impl SensorBatch {
         })
     }
 
-    /// Puts another sensor in the place of one, counted from 0, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
-    /// below the number of sensors are the first ones.
+    /// Replaces one sensor by another one at rest, whose deviations are drawn anew.
+    ///
+    /// - `sensor`: index of the sensor, from 0.
+    /// - `number`: identifies the new sensor. Numbers below the number of sensors give the first
+    ///   sensors of the batch.
     fn replace(&self, py: Python<'_>, sensor: Given<'_>, number: Given<'_>) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
         let number = number.seed("number")?;
@@ -448,7 +516,7 @@ impl SensorBatch {
         })
     }
 
-    /// Sensors that are stepped are no value.
+    /// Raises `TypeError`: a `SensorBatch` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         no_pickle(
             "SensorBatch",
@@ -470,7 +538,7 @@ impl SensorBatch {
 }
 
 impl SensorBatch {
-    /// Which sensor is meant, counted from 0.
+    /// The index of a sensor, from 0.
     fn number(&self, sensor: &Given<'_>) -> PyResult<usize> {
         sensor.count("sensor", 0..=self.n_sensors - 1)
     }

@@ -9,10 +9,10 @@ use twintac::{RunSettings, WorkError};
 
 use crate::error::{OrRaise, unusable};
 
-/// Most lists and dictionaries in each other: one that has itself would never end.
+/// Most levels of nested lists and dictionaries. A list that contains itself would never end.
 const DEEPEST: usize = 16;
 
-/// Settings but for those of keywords.
+/// Settings, with the values of keywords in place of their own.
 pub(crate) fn over<T: Serialize + DeserializeOwned>(
     base: T,
     own: Option<&Bound<'_, PyDict>>,
@@ -36,7 +36,8 @@ pub(crate) fn over<T: Serialize + DeserializeOwned>(
     Ok(settings)
 }
 
-/// Numbers, texts, and lists and dictionaries of them, of Python or of NumPy. `name` is the field in which they stand.
+/// A number, a text, or a list or dictionary of these, of Python or of NumPy, as JSON. `name` is
+/// the field that contains it.
 fn value_of(value: &Bound<'_, PyAny>, name: &str, deepest: usize) -> PyResult<Value> {
     let Some(below) = deepest.checked_sub(1) else {
         return Err(unusable(
@@ -82,7 +83,7 @@ fn value_of(value: &Bound<'_, PyAny>, name: &str, deepest: usize) -> PyResult<Va
         return Ok(Value::Array(each.collect::<PyResult<_>>()?));
     }
     if value.hasattr("tolist")? {
-        return value_of(&value.call_method0("tolist")?, name, below); // of NumPy
+        return value_of(&value.call_method0("tolist")?, name, below); // a NumPy object
     }
     if value.hasattr("__fspath__")? {
         return value_of(&value.call_method0("__fspath__")?, name, below);
@@ -111,7 +112,7 @@ fn values_of(values: &Bound<'_, PyDict>, within: &str, deepest: usize) -> PyResu
     values.iter().map(named).collect()
 }
 
-/// Anything that can be written as JSON, as Python has it.
+/// A value as Python objects, by way of JSON.
 pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|error| unusable(py, "value", &error.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
@@ -128,7 +129,7 @@ pub(crate) fn as_toml(py: Python<'_>, values: Option<&Bound<'_, PyDict>>, table:
     text.map_err(|error| unusable(py, "settings", &error.to_string()))
 }
 
-/// A value in such a text that cannot be: by its keyword.
+/// The exception for a value in such a text that is not allowed. It names the keyword.
 pub(crate) fn refused(py: Python<'_>, table: &str, [field, problem, hint]: [&str; 3]) -> PyErr {
     let of_table = field
         .strip_prefix(table)
@@ -136,7 +137,8 @@ pub(crate) fn refused(py: Python<'_>, table: &str, [field, problem, hint]: [&str
     unusable(py, of_table.unwrap_or(field), &format!("{problem}; {hint}"))
 }
 
-/// Settings but for those of a dictionary with a dictionary for each stage, or of the dictionary of one stage.
+/// Settings, with the values of a dictionary in place of their own. It has a dictionary for each
+/// stage, or is the dictionary of one stage.
 pub(crate) fn but(
     py: Python<'_>,
     base: RunSettings,

@@ -17,15 +17,16 @@ use crate::long_call::long_call;
 use crate::pickle::{Kept, Reduced, reduced};
 use crate::pose::Pose;
 
-/// A rigid shape that presses. `edge_radius_mm` rounds every convex edge without moving any face. Prismatic shapes have their profile in the xy
-/// plane and stand on z = 0.
+/// A rigid shape that presses the gel. `edge_radius_mm` rounds every convex edge and moves no face.
+/// Prismatic shapes have their profile in the xy plane and stand on z = 0. All lengths are in mm.
 ///
-/// Each function that makes one raises `Error`, whose `field` is the length that cannot be.
+/// Each function that makes a shape raises `Error` for a length that is not allowed; its `field`
+/// names the length.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Shape {
     pub(crate) shape: twintac::Shape,
-    /// What the STL files that it names have.
+    /// The surfaces of the STL files that it names.
     pub(crate) surfaces: Surfaces,
 }
 
@@ -35,12 +36,13 @@ impl Shape {
         Ok(Self { shape, surfaces })
     }
 
-    /// The shape as distances to it.
+    /// The signed distance field of the shape.
     fn distances(&self, py: Python<'_>) -> PyResult<Box<dyn SignedDistance>> {
         self.shape.signed_distance_field(&self.surfaces).or_raise(py)
     }
 
-    /// A surface where it is: as the shape of a file it would be moved, so that its lowest point has the origin's z.
+    /// A surface at its own position. A shape from a file would be moved so that its lowest point
+    /// is at z = 0.
     fn of_surface(py: Python<'_>, surface: TriangleSurface) -> PyResult<Self> {
         let mut hasher = DefaultHasher::new();
         let corners_mm = surface.vertices_mm().iter().map(|corner| corner.to_array());
@@ -62,13 +64,13 @@ impl Shape {
 
 #[pymethods]
 impl Shape {
-    /// A ball that stands on its origin: its middle is `radius_mm` above it.
+    /// A ball that stands on its origin: its centre is `radius_mm` above the origin.
     #[staticmethod]
     fn sphere(py: Python<'_>, radius_mm: f64) -> PyResult<Self> {
         Self::of(py, twintac::Shape::Sphere { radius_mm }, Surfaces::new())
     }
 
-    /// A flat-ended upright cylinder, whose rims are rounded with `edge_radius_mm`.
+    /// A flat-ended upright cylinder. Its rims are rounded with `edge_radius_mm`.
     #[staticmethod]
     fn cylinder(py: Python<'_>, radius_mm: f64, height_mm: f64, edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Cylinder {
@@ -79,7 +81,8 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// A box of this full size along x, y and z, mm, whose edges are rounded with `edge_radius_mm`.
+    /// A box with the full size `size_mm` along x, y and z, mm. Its edges are rounded with
+    /// `edge_radius_mm`.
     #[staticmethod]
     fn r#box(py: Python<'_>, size_mm: Given<'_>, edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Box {
@@ -89,7 +92,8 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// Two crossed bars in the shape of an X, a plus turned by 45°: each bar is `length_mm` long and `width_mm` wide.
+    /// Two crossed bars in the shape of an X (a plus, rotated by 45°). Each bar is `length_mm` long
+    /// and `width_mm` wide.
     #[staticmethod]
     fn x(
         py: Python<'_>,
@@ -125,7 +129,7 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// An upright equilateral prism, centroid at the origin, one corner towards +x.
+    /// An upright equilateral prism, with its centroid at the origin and one corner towards +x.
     #[staticmethod]
     fn triangle(py: Python<'_>, side_mm: f64, height_mm: f64, edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Triangle {
@@ -154,10 +158,15 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// A closed triangle surface in an STL file, whose `unit` is "mm", "cm", "m" or "inch", or in which a length of 1 is `scale` mm; its lowest point is
-    /// moved to the origin's z.
+    /// A closed triangle surface from an STL file. Its lowest point is moved to the height of the
+    /// origin.
     ///
-    /// Raises `Error` with the file if it cannot be read, its surface is not closed, or its size cannot be in that unit.
+    /// - `path`: path of the file.
+    /// - `unit`: unit of lengths in the file: `"mm"`, `"cm"`, `"m"` or `"inch"`; mm unless given.
+    /// - `scale`: the length in mm of 1 in the file, instead of a `unit`.
+    ///
+    /// Raises `Error` with the file if it cannot be read, if its surface is not closed, or if its
+    /// size is impossible in that unit.
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None, scale=None))]
     fn stl(py: Python<'_>, path: PathBuf, unit: Option<&str>, scale: Option<f64>) -> PyResult<Self> {
@@ -178,10 +187,14 @@ impl Shape {
         Self::of(py, twintac::Shape::Stl(file), surfaces)
     }
 
-    /// A closed surface of triangles: places of its corners, mm, `[n_vertices, 3]`, and the corners of each triangle, counter-clockwise seen from outside,
-    /// `[n_triangles, 3]`. It stays where it is.
+    /// A closed surface of triangles, which keeps its position.
     ///
-    /// Raises `Error` for arrays of another shape, a corner that is not there, and a surface that is not closed.
+    /// - `vertices_mm`: positions of the vertices, mm; `[n_vertices, 3]`.
+    /// - `triangles`: indices of the three vertices of each triangle, counter-clockwise seen from
+    ///   outside; `[n_triangles, 3]`.
+    ///
+    /// Raises `Error` for arrays of another shape, for an index without a vertex, and for a surface
+    /// that is not closed.
     #[staticmethod]
     fn surface(py: Python<'_>, vertices_mm: Given<'_>, triangles: Given<'_>) -> PyResult<Self> {
         let vertices_mm: Array<2> = vertices_mm.numbers("vertices_mm", "[n_vertices, 3], mm")?;
@@ -213,7 +226,9 @@ impl Shape {
         Self::of_surface(py, surface)
     }
 
-    /// Several shapes held together, each where its pose in the whole says; they may overlap.
+    /// Several shapes, joined rigidly. They may overlap.
+    ///
+    /// - `parts`: each shape with its pose in the frame of the whole.
     #[staticmethod]
     fn union(py: Python<'_>, parts: Vec<(Self, Pose)>) -> PyResult<Self> {
         let surfaces = parts
@@ -228,16 +243,21 @@ impl Shape {
         Self::of(py, twintac::Shape::Union { parts }, surfaces)
     }
 
-    /// Corners of the smallest box along the shape's axes that holds it, mm: `[2, 3]`.
+    /// Lowest and highest corner of the smallest box along the shape's axes that contains the
+    /// shape, mm; `[2, 3]`.
     #[getter]
     fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (low, high) = self.distances(py)?.bounds_mm();
         rows(py, [low.to_array(), high.to_array()].concat(), [2, 3])
     }
 
-    /// How far points of the shape's own frame are from its surface, mm, less than 0 inside: of `[n_points, 3]`, mm, `[n_points]`. Ctrl-C ends the wait.
+    /// Signed distances of points to the surface, negative inside. Ctrl-C ends the wait.
     ///
-    /// Raises `Error` for an array of another shape, and a point that is not finite.
+    /// - `points_mm`: points in the shape's own frame, mm; `[n_points, 3]`.
+    ///
+    /// Returns the distances, mm; `[n_points]`.
+    ///
+    /// Raises `Error` for an array of another shape, and for a point that is not finite.
     fn signed_distance_mm<'py>(
         &self,
         py: Python<'py>,
@@ -263,7 +283,7 @@ impl Shape {
         Ok(PyArray1::from_vec(py, distances_mm))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -308,9 +328,11 @@ pub(crate) fn corners_mm(surface: &TriangleSurface) -> Vec<[[f64; 3]; 3]> {
         .collect()
 }
 
-/// A shape whose distances are known at once: what the fast gel reads.
+/// A shape in the form in which the surrogate of the gel can press it: its signed distances are
+/// sampled once.
 ///
-/// Sampling a shape takes from a millisecond to a second, for a surface of many triangles.
+/// - `shape`: the shape. Sampling takes from a millisecond to a second, for a surface of many
+///   triangles.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Body {
@@ -328,7 +350,7 @@ impl Body {
         Ok(Self { body, shape })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -339,7 +361,7 @@ impl Body {
 }
 
 impl Kept for Body {
-    /// Of its shape, which is sampled again.
+    /// The state of its shape, which is sampled again.
     type State = <Shape as Kept>::State;
 
     fn state(&self, py: Python<'_>) -> PyResult<Self::State> {

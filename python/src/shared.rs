@@ -1,4 +1,4 @@
-//! What steps change: one thread at a time, whoever calls.
+//! Values that steps change: one thread at a time uses them.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -8,13 +8,14 @@ use pyo3::prelude::*;
 
 use crate::error::unusable;
 
-/// How long to wait before it is asked again whether another thread is done.
+/// Interval at which a waiting thread tries again.
 const PATIENCE: Duration = Duration::from_micros(200);
 
-/// A value that threads of Python share: each waits until the others are done with it, and Ctrl-C ends the wait.
+/// A value that Python threads share. A thread waits until the others are done with it; Ctrl-C ends
+/// the wait.
 pub(crate) struct Shared<T> {
     value: Mutex<T>,
-    /// The process whose thread had it last.
+    /// The process whose thread used it last.
     process: AtomicU32,
 }
 
@@ -26,16 +27,17 @@ impl<T: Send> Shared<T> {
         }
     }
 
-    /// Works with the value while other threads of Python run.
+    /// Works with the value while other Python threads run.
     ///
-    /// Raises `Error` in a forked process if another thread worked with it when it was forked.
+    /// Raises `Error` in a forked process if another thread was working with the value at the time
+    /// of the fork.
     pub(crate) fn work<R: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut T) -> R + Send) -> PyResult<R> {
         let mut held = self.lock(py)?;
         let value = &mut *held;
         Ok(py.detach(|| work(value)))
     }
 
-    /// Looks at the value, or does something to it that takes no time.
+    /// Reads the value, or changes it in negligible time.
     ///
     /// Raises `Error` as `work` does.
     pub(crate) fn look<R>(&self, py: Python<'_>, look: impl FnOnce(&mut T) -> R) -> PyResult<R> {

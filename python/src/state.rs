@@ -15,8 +15,9 @@ use crate::pickle::refused;
 use crate::pose::Pose;
 use crate::shared::Shared;
 
-/// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. What `Gel.state` returns. It keeps how it is deformed, what its material
-/// remembers, and where friction holds it.
+/// A gel that one indenter presses, frame by frame: it is pushed, slides and rotates to poses as
+/// they come. `Gel.state` returns it. It keeps the deformation of the gel, the history of its
+/// material, and the locations where friction holds it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct GelState {
     held: Arc<Shared<Held>>,
@@ -38,12 +39,12 @@ impl GelState {
         }
     }
 
-    /// Looks at the gel, once a step that was interrupted is made.
+    /// Reads the gel. If a step was interrupted, this waits until the step is done.
     fn look<T>(&self, py: Python<'_>, look: impl FnOnce(&mut Held) -> T) -> PyResult<T> {
         self.held.look(py, look)
     }
 
-    /// A vector of the last frame; zero before the first.
+    /// A vector of the last frame; zero before the first frame.
     fn vector<'py>(
         &self,
         py: Python<'py>,
@@ -56,20 +57,28 @@ impl GelState {
 
 #[pymethods]
 impl GelState {
-    /// What every number is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// One more frame, `since_previous_s` after the last: the indenter goes straight to a pose in the gel's frame (`gel_from_indenter`). With `force_n`, N, above 0, it then
-    /// goes down or up, by at most the gel's height, until it presses straight down with that force. The first frame takes no notice of the time.
+    /// Computes one more frame: the indenter moves to a pose on a straight line. Small steps take
+    /// milliseconds on a gel of few nodes (`Gel(sensor, {"max_path_nodes": 4000})`), long steps on
+    /// a fine gel take seconds. Ctrl-C ends the wait; the step is finished nevertheless.
     ///
-    /// Returns the hydrostatic pressure in the gel over each taxel's port, kPa; `[n_taxels]`. Small steps take milliseconds on a gel of few nodes
-    /// (`Gel(sensor, {"max_path_nodes": 4000})`), long ones on a fine gel seconds. Ctrl-C ends the wait; the step is made all the same.
+    /// - `since_previous_s`: time since the last frame, s. The first frame ignores it.
+    /// - `gel_from_indenter`: pose of the indenter in the gel's frame.
+    /// - `force_n`: force straight down, N, above 0. The indenter then moves down or up from the
+    ///   pose, by at most the gel's height, until it presses with this force.
     ///
-    /// Raises `Error` if the solver finds no equilibrium: the gel is then as it was before, and smaller steps may do; for a time below 0, and for a force that is not
-    /// above 0, is not met, or is more than the sensor stands (`limits.force_n` of its description).
+    /// Returns the port pressures: the hydrostatic pressure in the gel over each taxel's port, kPa;
+    /// `[n_taxels]`.
+    ///
+    /// Raises `Error` if the solver finds no equilibrium. The gel is then as it was before, and
+    /// smaller steps may succeed. It also raises `Error` for a time below 0, and for a force that
+    /// is not above 0, is not reached, or is above the limit of the sensor (`limits.force_n` of its
+    /// description).
     #[pyo3(signature = (since_previous_s, gel_from_indenter, *, force_n=None))]
     fn step<'py>(
         &self,
@@ -83,7 +92,7 @@ impl GelState {
             let problem = format!("is {force_n}, expected a number above 0");
             return Err(unusable(py, "force_n", &problem));
         }
-        self.look(py, |_| ())?; // it can be stepped in this process
+        self.look(py, |_| ())?; // checks that this process can step it
         let taxels = self.taxels.clone();
         let readings_kpa = long_call_on(py, Arc::clone(&self.held), move |held| {
             let pose = &gel_from_indenter.pose;
@@ -98,45 +107,48 @@ impl GelState {
         Ok(PyArray1::from_vec(py, readings_kpa.or_raise(py)?))
     }
 
-    /// Where the indenter is, in the gel's frame; `None` before the first frame.
+    /// Pose of the indenter in the gel's frame; `None` before the first frame.
     #[getter]
     fn gel_from_indenter(&self, py: Python<'_>) -> PyResult<Option<Pose>> {
         let pose = self.look(py, |held| held.state.gel_from_indenter())?;
         Ok(pose.map(|pose| Pose { pose }))
     }
 
-    /// How far the indenter is below where, at the place and turn of the first of the poses that `Gel.state` was given, it first touches the gel, mm; `None` before the
-    /// first frame.
+    /// Depth below the height at which the indenter first touches the gel at the location and
+    /// rotation of the first pose that `Gel.state` was given, mm; `None` before the first frame.
     #[getter]
     fn depth_mm(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.depth_mm))
     }
 
-    /// Whether the forces at the last frame are balanced: they are, unless `Gel.state` was given a `deadline_ms` that came first. `None` before the first frame.
+    /// Whether the forces of the last frame are balanced. They always are, unless the `deadline_ms`
+    /// of `Gel.state` came first. `None` before the first frame.
     #[getter]
     fn converged(&self, py: Python<'_>) -> PyResult<Option<bool>> {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.converged))
     }
 
-    /// What part of the load is unbalanced at the last frame; `None` before the first.
+    /// Fraction of the load that is unbalanced at the last frame; `None` before the first frame.
     #[getter]
     fn residual(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.quality.residual))
     }
 
-    /// Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. A press straight down has a negative z. Zero before the first frame.
+    /// Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. Its z
+    /// component is negative if the indenter presses straight down. Zero before the first frame.
     #[getter]
     fn force_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.vector(py, |frame| frame.force_n)
     }
 
-    /// Torque of the indenter on the gel about the indenter's origin at the last frame, in the gel's frame, N mm; `[3]`. Zero before the first frame.
+    /// Torque of the indenter on the gel about the indenter's origin at the last frame, in the
+    /// gel's frame, N mm; `[3]`. Zero before the first frame.
     #[getter]
     fn torque_n_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.vector(py, |frame| frame.torque_n_mm)
     }
 
-    /// A gel that is pressed is no value.
+    /// Raises `TypeError`: a `GelState` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "GelState",
@@ -151,7 +163,8 @@ impl GelState {
         })
     }
 
-    /// Takes the indenter away: the gel is as it was before the first frame, and remembers nothing.
+    /// Removes the indenter, and resets the gel to the state before the first frame, without any
+    /// history.
     fn rest(&self, py: Python<'_>) -> PyResult<()> {
         self.look(py, |held| {
             held.state.rest();

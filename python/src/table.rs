@@ -1,4 +1,4 @@
-//! What is read of a shape at places and depths.
+//! Tables of readings of a shape at locations and depths.
 
 use pyo3::prelude::*;
 
@@ -6,17 +6,21 @@ use crate::error::unusable;
 use crate::given::{Array, Given};
 use crate::pickle::{Kept, Reduced, reduced};
 
-/// How far the distances of an axis may differ, as part of them.
+/// Largest relative difference between the steps of an axis.
 const EVENNESS: f64 = 1e-6;
 
-/// What is read of one shape at the nodes of a grid over place and depth, for `Inverse.of_tables`. An axis of one node is not looked for. Between nodes readings are cubic.
+/// The readings under one shape at the nodes of a grid over location and depth, for
+/// `Inverse.of_tables`. A coordinate whose axis has one node is not estimated. Between the nodes,
+/// readings are interpolated with cubic polynomials.
 ///
-/// - `x_mm`, `y_mm`: places of the shape's origin in the gel's plane, mm, evenly apart and increasing; `[n_x]` and `[n_y]`.
-/// - `depth_mm`: depths below first touch, mm, evenly apart and increasing; `[n_depth]`.
+/// - `x_mm`, `y_mm`: locations of the shape's origin in the gel's plane, mm, evenly spaced and
+///   increasing; `[n_x]` and `[n_y]`.
+/// - `depth_mm`: depths below first touch, mm, evenly spaced and increasing; `[n_depth]`.
 /// - `readings_kpa`: readings above the untouched sensor, kPa; `[n_depth, n_y, n_x, n_taxels]`.
 /// - `force_n`: force into the gel, N, `[n_depth, n_y, n_x]`; unknown unless given.
 ///
-/// Raises `Error`, whose `field` is the array that has another shape, or numbers that cannot be.
+/// Raises `Error` for an array with another shape or with numbers that are not allowed; its `field`
+/// names the array.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct ReadingTable {
@@ -95,7 +99,7 @@ impl ReadingTable {
         })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -110,7 +114,8 @@ impl ReadingTable {
 }
 
 impl Kept for ReadingTable {
-    /// The least node and the distance of the nodes along x, y and depth, mm, their numbers; readings and forces at each node.
+    /// First node and step of the nodes along x, y and depth, mm; numbers of nodes; readings and
+    /// forces at each node.
     type State = ([[f64; 3]; 2], [usize; 3], Vec<Vec<f64>>, Vec<f64>);
 
     fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
@@ -141,7 +146,7 @@ impl Kept for ReadingTable {
 /// Longest axis, mm.
 const LONGEST_MM: f64 = 1000.0;
 
-/// The first number and the distance of numbers that are evenly apart; a lone one has the distance 1.
+/// First number and step of evenly spaced numbers. A single number has the step 1.
 fn even(numbers: &[f64]) -> Option<[f64; 2]> {
     let (first, last) = (*numbers.first()?, *numbers.last()?);
     let step = match numbers.len() {

@@ -12,7 +12,8 @@ use crate::pool::in_parallel;
 use crate::sensors::Imperfection;
 use crate::shared::Shared;
 
-/// What a step answers: observations, rewards, terminated, truncated, figures; and observations and figures at the end of episodes that ended.
+/// The result of a step: observations, rewards, terminated, truncated, figures; and observations
+/// and figures at the end of episodes that ended.
 type Step<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f64>>,
@@ -25,18 +26,24 @@ type Step<'py> = (
 /// Observations and figures.
 type Observed<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 
-/// Many environments of one task, each with a sensor of its own, stepped in one call. `len()` is the number of environments. `twintac.gymnasium` has them as environments
-/// of Gymnasium, and says what each task observes, does and rewards.
+/// Many environments of one task of reinforcement learning, each with its own sensor, stepped in
+/// one call. `len()` is the number of environments. `twintac.gymnasium` has them as Gymnasium
+/// environments, and describes observations, actions and rewards of each task.
 ///
-/// - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`.
-/// - `gel`: PhysTac's unless given.
-/// - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
-/// - `autoreset`: when an environment whose episode is over begins the next one: in the next step (`"NextStep"`), which ignores its action and has a reward of zero; in
-///   the same step (`"SameStep"`); or when `reset` is called (`"Disabled"`).
-/// - `n_environments`: 1 or more, and at most ten million readings of their sensors: 1,250,000 of eight taxels.
-/// - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
+/// - `kind`: the task: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`.
+/// - `n_environments`: number of environments, from 1 to as many as give ten million readings:
+///   1,250,000 with sensors of eight taxels.
+/// - `gel`: the surrogate of the gel; PhysTac's unless given.
+/// - `imperfection`: the sensor variation from which the sensor of each episode is drawn; that of
+///   working sensors unless given.
+/// - `autoreset`: when an environment whose episode has ended begins the next one: in the next step
+///   (`"NextStep"`), which ignores its action and has a reward of zero; in the same step
+///   (`"SameStep"`); or when `reset` is called (`"Disabled"`).
+/// - `n_threads`: number of threads, at most 1024; as many as there are cores unless given. Results
+///   do not depend on it.
 ///
-/// Raises `Error` for a task that is not there, a gel that it cannot use, and a number that is out of its range.
+/// Raises `Error` for a task that does not exist, for a gel that the task cannot use, and for a
+/// number out of its range.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Tasks {
     running: Shared<Running>,
@@ -52,7 +59,7 @@ pub(crate) struct Tasks {
 /// What steps change.
 struct Running {
     tasks: twintac::Tasks,
-    /// What was observed last in episodes that ended, and the figures then.
+    /// Last observations of episodes that ended, and their figures.
     last: [Vec<f32>; 2],
 }
 
@@ -100,33 +107,37 @@ impl Tasks {
         })
     }
 
-    /// What every number is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// Numbers of an observation, each from -10 to 10.
+    /// Length of an observation. Each of its numbers is from -10 to 10.
     #[getter]
     fn n_observed(&self) -> usize {
         self.n_observed
     }
 
-    /// Numbers of an action, each from -1 to 1.
+    /// Length of an action. Each of its numbers is from -1 to 1.
     #[getter]
     fn n_actions(&self) -> usize {
         self.n_actions
     }
 
-    /// Names of what is true in an environment and not observed, with units; `[n_figures]`.
+    /// Names, with units, of the figures: true values of an environment that are not observed;
+    /// `[n_figures]`.
     #[getter]
     fn figures(&self) -> Vec<&str> {
         self.figures.to_vec()
     }
 
-    /// Gives environments seeds, one for each, from the next reset on; `None` leaves an environment the one that it has.
+    /// Sets the seeds of the environments. They take effect at the next reset.
     ///
-    /// Raises `Error` for another number of seeds, and for a seed that is not from 0 to 2⁶⁴ - 1.
+    /// - `seeds`: a seed for each environment, from 0 to 2⁶⁴ - 1; with `None`, an environment keeps
+    ///   its seed.
+    ///
+    /// Raises `Error` for another number of seeds, and for a seed out of this range.
     fn seed(&self, py: Python<'_>, seeds: Given<'_>) -> PyResult<()> {
         let seeds = seeds.seeds("seeds", self.n_environments)?;
         self.running.look(py, |running| {
@@ -138,8 +149,12 @@ impl Tasks {
         })
     }
 
-    /// Begins the next episode of all environments, or of those where `which`, `[n_environments]`, is true. Returns observations, `[n_environments, n_observed]`, and figures,
-    /// `[n_environments, n_figures]`; zeros of the others.
+    /// Begins the next episode of environments.
+    ///
+    /// - `which`: whether each environment is reset, `[n_environments]`; all of them unless given.
+    ///
+    /// Returns observations, `[n_environments, n_observed]`, and figures,
+    /// `[n_environments, n_figures]`. They are zero for environments that are not reset.
     #[pyo3(signature = (which=None))]
     fn reset<'py>(&self, py: Python<'py>, which: Option<Given<'_>>) -> PyResult<Observed<'py>> {
         let n = self.n_environments;
@@ -163,10 +178,15 @@ impl Tasks {
         Ok((observed, figures))
     }
 
-    /// One step of every environment. `actions` is `[n_environments, n_actions]`, each from -1 to 1.
+    /// Computes one step of every environment.
     ///
-    /// Returns observations, `[n_environments, n_observed]`; rewards, whether the task is over, and whether time is over, each `[n_environments]`; figures,
-    /// `[n_environments, n_figures]`; and, of environments that began anew in the same step, what was observed before and the figures then, or `None` if there are none.
+    /// - `actions`: the actions, each number from -1 to 1; `[n_environments, n_actions]`.
+    ///
+    /// Returns observations, `[n_environments, n_observed]`; rewards, `[n_environments]`; whether
+    /// the task has ended, `[n_environments]`; whether the time limit has ended the episode,
+    /// `[n_environments]`; figures, `[n_environments, n_figures]`; and the last observations and
+    /// figures of environments that began a new episode in the same step, or `None` if there are
+    /// none.
     ///
     /// Raises `Error` for actions of another shape, or that are not finite.
     fn step<'py>(&self, py: Python<'py>, actions: Given<'_>) -> PyResult<Step<'py>> {
@@ -204,7 +224,7 @@ impl Tasks {
                     last_figures,
                 };
                 let step = || tasks.step(&actions, answers);
-                // Nobody has to be woken for one thread.
+                // A single thread needs no pool.
                 if self.n_threads > 1 {
                     in_parallel(step)
                 } else {
@@ -230,7 +250,11 @@ impl Tasks {
         ))
     }
 
-    /// A picture of one environment, counted from 0: what is there from above, and what its sensor reads. `[240, 600, 3]`, red, green and blue, 0 to 255.
+    /// Draws one environment: the scene from above, and the readings of its sensor.
+    ///
+    /// - `environment`: index of the environment, from 0.
+    ///
+    /// Returns red, green and blue of each pixel, 0 to 255; `[240, 600, 3]`.
     fn picture<'py>(&self, py: Python<'py>, environment: Given<'_>) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let environment = environment.count("environment", 0..=self.n_environments - 1)?;
         let pixels = self
@@ -241,7 +265,7 @@ impl Tasks {
         PyArray1::from_vec(py, pixels).reshape([height, width, 3])
     }
 
-    /// Environments that are stepped are no value.
+    /// Raises `TypeError`: a `Tasks` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "Tasks",

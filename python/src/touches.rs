@@ -1,4 +1,4 @@
-//! What touches many sensors, as arrays.
+//! Touches of many sensors, as arrays.
 
 use pyo3::prelude::*;
 use twintac::{Touch, TouchId};
@@ -8,17 +8,19 @@ use crate::given::Given;
 use crate::pose::poses;
 use crate::shape::Body;
 
-/// What touches each of many sensors.
+/// The touches of many sensors.
 pub(crate) struct Touches {
     pub(crate) touches: Vec<Touch>,
-    /// Where each sensor's touches end; `[n_sensors]`.
+    /// The end of each sensor's touches in the list; `[n_sensors]`.
     pub(crate) ends: Vec<usize>,
 }
 
 impl Touches {
-    /// - `gel_from_body`: `[n_touches, 7]`, place in mm and quaternion `(x, y, z, w)`; or `[n_touches, 3]`, places of bodies that are not turned.
-    /// - `body`: numbers of the bodies, `[n_touches]`; the first body unless given.
-    /// - `ends`: where each sensor's touches end, `[n_sensors]`; one touch for each sensor unless given.
+    /// - `gel_from_body`: `[n_touches, 7]`, position in mm and quaternion `(x, y, z, w)`; or
+    ///   `[n_touches, 3]`, positions of bodies without rotation.
+    /// - `body`: indices of the bodies, `[n_touches]`; default: the first body.
+    /// - `ends`: the end of each sensor's touches in the list, `[n_sensors]`; default: one touch
+    ///   for each sensor.
     pub(crate) fn checked(
         py: Python<'_>,
         gel_from_body: &Given<'_>,
@@ -61,7 +63,7 @@ impl Touches {
     }
 }
 
-/// Which thing each touch is, of integers of any type and sign.
+/// The identity of each touch, from integers of any type and sign.
 pub(crate) fn touch_ids(py: Python<'_>, ids: &Given<'_>, n_touches: usize) -> PyResult<Vec<TouchId>> {
     let ids = ids.integers::<1>("touch_id", "[n_touches]")?.1;
     if ids.len() != n_touches {
@@ -84,7 +86,7 @@ fn checked_ends(py: Python<'_>, ends: &[i64], n_touches: usize) -> PyResult<Vec<
     })
 }
 
-/// Bodies side by side in memory, at least one.
+/// The library's bodies; at least one.
 pub(crate) fn bodies(py: Python<'_>, bodies: Vec<Body>) -> PyResult<Vec<twintac::Body>> {
     if bodies.is_empty() {
         return Err(unusable(py, "bodies", "has none, expected at least one"));

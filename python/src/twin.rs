@@ -18,12 +18,13 @@ use crate::press::Press;
 use crate::sensor::Sensor;
 use crate::shared::Shared;
 
-/// The file of a twin's folder that tells one twin from another.
+/// The file of a twin's folder that identifies the twin.
 const CHECKSUMS: &str = "checksums.json";
 
-/// A trained twin: what the barometers of one sensor would read while its gel is pressed.
+/// A trained twin: it predicts the readings of one sensor's barometers while its gel is pressed.
 ///
-/// `predict` reads a whole press, `at` one place frame by frame, `states` many sensors together, from pressures at their ports.
+/// `predict` computes a whole press, `predict_along` a path, `at` one location frame by frame, and
+/// `states` many sensors together from the pressures at their ports.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Twin {
     pub(crate) twin: Arc<twintac::Twin>,
@@ -51,7 +52,10 @@ impl Twin {
 
 #[pymethods]
 impl Twin {
-    /// Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`). A pickle keeps where the folder is, and finds the same twin there or raises `Error`.
+    /// Loads a twin. A pickle contains the path of the folder. Unpickling loads the same twin from
+    /// there, or raises `Error`.
+    ///
+    /// - `folder`: the folder of a run's twin: `<run>/model` (`Run.model_folder`).
     ///
     /// Raises `Error` for a folder that holds no twin, or a damaged one.
     #[staticmethod]
@@ -59,7 +63,7 @@ impl Twin {
         Self::of(py, folder)
     }
 
-    /// The sensor whose twin it is.
+    /// The sensor of the twin.
     #[getter]
     fn sensor(&self) -> Sensor {
         Sensor {
@@ -67,16 +71,20 @@ impl Twin {
         }
     }
 
-    /// Where the recordings come from that it was trained with: `"real"`, `"emulated"` or `"simulated"`. What it predicts is simulated.
+    /// Provenance of the recordings on which the twin was trained: `"real"`, `"emulated"` or
+    /// `"simulated"`. Its predictions are `"simulated"`.
     #[getter]
     fn trained_on(&self) -> String {
         self.twin.trained_on().to_string()
     }
 
-    /// What the barometers would read along a press, as many frames a second as the sensor gives. Bench and gel are as they were found at training. Takes a few
-    /// seconds; Ctrl-C ends the wait.
+    /// Predicts the readings along a press, at the frame rate of the sensor. Test setup and gel are
+    /// as they were fitted in the training. The call takes a few seconds; Ctrl-C ends the wait.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, and for a place that cannot be pressed.
+    /// - `press`: the press.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and for a location that cannot
+    /// be pressed.
     fn predict(&self, py: Python<'_>, press: &Press) -> PyResult<Prediction> {
         let (twin, press) = (Arc::clone(&self.twin), twintac::Press::from(press));
         let prediction = long_call(py, move || twin.predict(&press))?.or_raise(py)?;
@@ -87,10 +95,16 @@ impl Twin {
         })
     }
 
-    /// What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included; each frame takes from some milliseconds to seconds. Points of
-    /// the path are not read. Ctrl-C ends it before its next frame. `Prediction.failure` says why a path ends before it should.
+    /// Predicts the readings along a path. The gel is computed by finite elements, frame by frame,
+    /// with sliding and tilting; a frame takes from some milliseconds to seconds. Ctrl-C ends the
+    /// call before the next frame. If the path cannot be followed to its end, `Prediction.failure`
+    /// says why.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, and for a path that misses the gel.
+    /// - `path`: the path. Its points are not read.
+    /// - `progress`: display of the progress, see `Progress`.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and for a path that misses the
+    /// gel.
     #[pyo3(signature = (path, *, progress=None))]
     fn predict_along(
         &self,
@@ -110,8 +124,10 @@ impl Twin {
         })
     }
 
-    /// The twin at the place of a press and down to its depth, to be stepped with depths as they come. Takes a second; Ctrl-C ends the wait. A step then takes a
-    /// microsecond.
+    /// The twin at the location of a press and down to its depth, to be stepped with depths as they
+    /// come. The call takes a second; Ctrl-C ends the wait. A step then takes a microsecond.
+    ///
+    /// - `press`: the press.
     ///
     /// Raises `Error` as `predict` does.
     fn at(&self, py: Python<'_>, press: &Press) -> PyResult<TwinAtPlace> {
@@ -122,9 +138,12 @@ impl Twin {
         })
     }
 
-    /// Twins of so many sensors, to be stepped together with pressures at their ports: for programs that solve the gel themselves.
+    /// Twins of many sensors, to be stepped together with the pressures at their ports: for
+    /// programs that compute the gel themselves.
     ///
-    /// Raises `Error` for no sensor, and for more than make ten million readings.
+    /// - `n_sensors`: number of sensors, from 1 to as many as give ten million readings.
+    ///
+    /// Raises `Error` for a number out of this range.
     #[pyo3(signature = (n_sensors=None), text_signature = "($self, n_sensors=1)")]
     fn states(&self, n_sensors: Option<Given<'_>>) -> PyResult<TwinState> {
         let n_taxels = self.twin.sensor().taxels().count();
@@ -136,7 +155,7 @@ impl Twin {
         })
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -150,7 +169,8 @@ impl Twin {
     }
 }
 
-/// What a twin would read along a press or a path: what `Twin.predict` and `Twin.predict_along` return. Every array has a row for each frame.
+/// Predicted readings along a press or a path: the result of `Twin.predict` and
+/// `Twin.predict_along`. Every array has a row for each frame.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Prediction {
     prediction: twintac::Prediction,
@@ -160,32 +180,33 @@ pub(crate) struct Prediction {
 
 #[pymethods]
 impl Prediction {
-    /// What every number here is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// Why the frames end before the path does; `None` if they do not, and of a press.
+    /// Why the frames end before the path does; `None` if they reach its end, and for a press.
     #[getter]
     fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
 
-    /// Place of the indenter's origin in the gel's plane, x and y, mm; `[n_frames, 2]`.
+    /// Location of the indenter's origin in the gel's plane, x and y, mm; `[n_frames, 2]`.
     #[getter]
     fn place_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let places_mm = self.prediction.place_mm.as_flattened().to_vec();
         rows(py, places_mm, [self.prediction.place_mm.len(), 2])
     }
 
-    /// Time since the start of the press, or that of the path, s; `[n_frames]`.
+    /// Time since the start of the press or the path, s; `[n_frames]`.
     #[getter]
     fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.prediction.time_s)
     }
 
-    /// Depth below first touch, mm, with the height at which the bench of the recordings touched; negative above the gel; `[n_frames]`.
+    /// Depth below first touch, which is at the contact height of the recordings' test setup, mm;
+    /// negative above the gel; `[n_frames]`.
     #[getter]
     fn depth_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.prediction.depth_mm)
@@ -197,19 +218,22 @@ impl Prediction {
         PyArray1::from_slice(py, &self.prediction.force_n)
     }
 
-    /// What the barometers would read above what they read untouched, kPa; `[n_frames, n_taxels]`.
+    /// Predicted readings of the barometers above those of the untouched sensor, kPa;
+    /// `[n_frames, n_taxels]`.
     #[getter]
     fn readings_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         of_rows(py, &self.prediction.readings_kpa, self.n_taxels)
     }
 
-    /// Whether the frame was simulated; `[n_frames]`. It was not where it is deeper than the gel could be pressed: the last pressures stand there.
+    /// Whether the frame was simulated; `[n_frames]`. A frame that is deeper than the gel could be
+    /// pressed in the simulation was not: it has the last simulated pressures.
     #[getter]
     fn simulated<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         PyArray1::from_slice(py, &self.prediction.simulated)
     }
 
-    /// Half the width of the 90 % interval around each reading, kPa, `[n_frames, n_taxels]`; `None` of a twin that does not know.
+    /// Half width of the 90 % interval around each reading, kPa; `[n_frames, n_taxels]`. `None` for
+    /// a twin without intervals.
     #[getter]
     fn half_width_kpa<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let certainty = self.prediction.certainty.as_ref();
@@ -218,29 +242,36 @@ impl Prediction {
             .transpose()
     }
 
-    /// How unlike the contact is to what taught the twin, without unit, `[n_frames]`; `None` of a twin that does not know.
+    /// Out-of-distribution (OOD) score of the contact: its distance from the training set, without
+    /// unit; `[n_frames]`. `None` for a twin without intervals.
     #[getter]
     fn unlikeness<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let certainty = self.prediction.certainty.as_ref()?;
         Some(PyArray1::from_slice(py, &certainty.unlikeness))
     }
 
-    /// Whether the contact is too unlike for readings and intervals to be trusted, `[n_frames]`; `None` of a twin that does not know.
+    /// Whether the contact is so far out of distribution that readings and intervals cannot be
+    /// trusted; `[n_frames]`. `None` for a twin without intervals.
     #[getter]
     fn is_unlike<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<bool>>> {
         let certainty = self.prediction.certainty.as_ref()?;
         Some(PyArray1::from_slice(py, &certainty.is_unlike))
     }
 
-    /// Draws readings with their 90 % intervals, force and depth over time; grey is where they are not to be trusted: not simulated, or unlike.
+    /// Draws readings with their 90 % intervals, force and depth over time with Matplotlib. The
+    /// background is grey where the prediction cannot be trusted: where it was not simulated, or is
+    /// out of distribution.
     ///
-    /// With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+    /// - `axes`: three axes to draw in; new ones unless given.
+    ///
+    /// Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+    /// Matplotlib, and `Error` for another number of axes.
     #[pyo3(signature = (axes=None))]
     fn plot<'py>(result: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         plot(result.py(), "prediction", (result, axes))
     }
 
-    /// What a pickle keeps.
+    /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
     }
@@ -292,7 +323,7 @@ impl Kept for Prediction {
     }
 }
 
-/// A twin whose sensor is pressed at one place, stepped with depths: what `Twin.at` returns.
+/// A twin whose sensor is pressed at one location, stepped with depths. `Twin.at` returns it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct TwinAtPlace {
     twin: Shared<twintac::TwinAtPlace>,
@@ -301,16 +332,20 @@ pub(crate) struct TwinAtPlace {
 
 #[pymethods]
 impl TwinAtPlace {
-    /// What every reading is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// One more frame, `since_previous_s` after the last, at a depth below first touch, mm, negative above the gel. Returns what the barometers would read above
-    /// their zero, kPa; `[n_taxels]`.
+    /// Computes one more frame.
     ///
-    /// Raises `Error` for a time below 0 or a depth that is not finite.
+    /// - `since_previous_s`: time since the last frame, s.
+    /// - `depth_mm`: depth below first touch, mm; negative above the gel.
+    ///
+    /// Returns the predicted readings of the barometers above their zero, kPa; `[n_taxels]`.
+    ///
+    /// Raises `Error` for a time below 0, and for a depth that is not finite.
     fn step<'py>(
         &self,
         py: Python<'py>,
@@ -334,7 +369,8 @@ impl TwinAtPlace {
         self.twin.look(py, |twin| twin.force_n())
     }
 
-    /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
+    /// Half widths of the 90 % intervals around the last readings, kPa; `[n_taxels]`. `None` for a
+    /// twin without intervals.
     #[getter]
     fn half_width_kpa<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         self.twin.look(py, |twin| {
@@ -343,30 +379,33 @@ impl TwinAtPlace {
         })
     }
 
-    /// How unlike the last contact is to what taught the twin, without unit, and whether it is too unlike for readings and intervals to be trusted; `None` of a
-    /// twin that does not know.
+    /// Out-of-distribution (OOD) score of the last contact, without unit, and whether the contact
+    /// is so far out of distribution that readings and intervals cannot be trusted. `None` for a
+    /// twin without intervals.
     #[getter]
     fn unlikeness(&self, py: Python<'_>) -> PyResult<Option<(f64, bool)>> {
         self.twin.look(py, |twin| twin.unlikeness())
     }
 
-    /// Depth below first touch at which the table ends, mm; deeper, its last pressures stand.
+    /// Depth below first touch at which the table over depth ends, mm. At larger depths, its last
+    /// pressures are used.
     #[getter]
     fn max_depth_mm(&self, py: Python<'_>) -> PyResult<f64> {
         self.twin.look(py, |twin| twin.max_depth_mm())
     }
 
-    /// Takes what is read now as zero, as a tare of a real sensor does.
+    /// Sets the present readings to zero, as a tare of a real sensor does.
     fn tare(&self, py: Python<'_>) -> PyResult<()> {
         self.twin.look(py, twintac::TwinAtPlace::tare)
     }
 
-    /// Lets the gel rest until the next frame: it forgets the presses before. The zero stays.
+    /// Resets the gel to rest until the next frame: readings no longer depend on earlier presses.
+    /// The zero stays.
     fn rest(&self, py: Python<'_>) -> PyResult<()> {
         self.twin.look(py, twintac::TwinAtPlace::rest)
     }
 
-    /// What is pressed is no value.
+    /// Raises `TypeError`: a `TwinAtPlace` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "TwinAtPlace",
@@ -383,26 +422,32 @@ impl TwinAtPlace {
     }
 }
 
-/// Twins of many sensors, stepped together with pressures at their ports: what `Twin.states` returns. `len()` is the number of sensors.
+/// Twins of many sensors, stepped together with the pressures at their ports. `Twin.states` returns
+/// them. `len()` is the number of sensors.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct TwinState {
     state: Shared<twintac::TwinState>,
-    /// Sensors and taxels.
+    /// Numbers of sensors and taxels.
     shape: [usize; 2],
 }
 
 #[pymethods]
 impl TwinState {
-    /// What every reading is: simulated.
+    /// Provenance of all numbers: `"simulated"`.
     #[getter]
     fn provenance(&self) -> &'static str {
         PROVENANCE
     }
 
-    /// One more frame of every sensor, `since_previous_s` after the last: from pressures at the ports to what the barometers would read, kPa; both
-    /// `[n_sensors, n_taxels]`.
+    /// Computes one more frame of every sensor.
     ///
-    /// Raises `Error` for a time below 0, and for pressures of another shape or that are not finite.
+    /// - `since_previous_s`: time since the last frame, s.
+    /// - `pressure_kpa`: pressures at the ports, kPa; `[n_sensors, n_taxels]`.
+    ///
+    /// Returns the predicted readings of the barometers, kPa; `[n_sensors, n_taxels]`.
+    ///
+    /// Raises `Error` for a time below 0, and for pressures of another shape or that are not
+    /// finite.
     fn step<'py>(
         &self,
         py: Python<'py>,
@@ -427,23 +472,26 @@ impl TwinState {
         rows(py, readings_kpa, self.shape)
     }
 
-    /// Takes what is read now as zero, as a tare of a real sensor does.
+    /// Sets the present readings to zero, as a tare of a real sensor does.
     fn tare(&self, py: Python<'_>) -> PyResult<()> {
         self.state.look(py, twintac::TwinState::tare)
     }
 
-    /// Takes what a sensor that nothing touches reads as zero.
+    /// Sets the readings of an untouched sensor to zero.
     fn tare_untouched(&self, py: Python<'_>) -> PyResult<()> {
         self.state.look(py, twintac::TwinState::tare_untouched)
     }
 
-    /// Lets the gel of one sensor, counted from 0, rest until its next frame: it forgets the presses before. Its zero stays.
+    /// Resets the gel of one sensor to rest until its next frame: readings no longer depend on
+    /// earlier presses. The zero stays.
+    ///
+    /// - `sensor`: index of the sensor, from 0.
     fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
         let sensor = sensor.count("sensor", 0..=self.shape[0] - 1)?;
         self.state.look(py, |state| state.rest(sensor))
     }
 
-    /// What is stepped is no value.
+    /// Raises `TypeError`: a `TwinState` cannot be pickled or copied.
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "TwinState",

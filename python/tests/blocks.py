@@ -16,7 +16,7 @@ LEGS = """<body name="thing" pos="0 0 0.0136"><freejoint name="free"/>
 
 
 def palm(things: str = BLOCK, option: str = "", rest: str = "", palm_holds: str = "", sensor: Sensor | None = None) -> mujoco.MjModel:
-    """A model with a palm at the origin and what is above it."""
+    """A model with a palm at the origin and things above it."""
     spec = mujoco.MjSpec.from_string(f'<mujoco><option timestep="0.001">{option}</option><worldbody><body name="palm">{palm_holds}</body>{things}</worldbody>{rest}</mujoco>')
     add_sensor(spec, Sensor.phystac() if sensor is None else sensor, body="palm", name="touch")
     return spec.compile()
@@ -30,7 +30,7 @@ class Scene:
         self.touch = TouchSensors(model, ["touch"], **arguments)
 
     def step(self, n_steps: int = 1, pushing: bool = False) -> npt.NDArray[np.float64]:
-        """Steps, and returns `qpos` after each."""
+        """Makes steps. Returns `qpos` after each step."""
         way = []
         for _ in range(n_steps):
             mujoco.mj_step1(self.model, self.data)

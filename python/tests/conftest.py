@@ -1,4 +1,4 @@
-"""What several tests use."""
+"""Functions and fixtures that several tests use."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ DATA = ROOT / "crates/app/twintac/examples/data"
 
 
 def run_example(name: str, folder: Path, *arguments: str) -> str:
-    """Runs an example in a folder. What it prints."""
+    """Runs an example in a folder. Returns its standard output."""
     example = ROOT / "python/examples" / name
     ran = subprocess.run([sys.executable, example, *arguments], cwd=folder, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
@@ -27,7 +27,7 @@ def run_command(*arguments: object) -> "subprocess.CompletedProcess[str]":
 
 @pytest.fixture(scope="session")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished run: that of the example that trains."""
+    """A finished run: that of the example that trains a twin."""
     folder = tmp_path_factory.mktemp("trained")
     run_example("train_from_csv.py", folder)
     return folder / "runs/from-csv"

@@ -1,4 +1,4 @@
-"""Random contacts, as the fast gel in Rust and as arrays: for tests and benchmarks."""
+"""Random contacts, for the surrogate of the gel in Rust and as arrays, for tests and benchmarks."""
 
 import importlib
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ CUBES = np.array(
 
 
 def simple() -> list[tuple[arrays.Shapes, Shape]]:
-    """Shapes that both sides know by the same formulas."""
+    """Shapes for which Rust and arrays have the same formulas."""
     return [
         (arrays.ball(2.5), Shape.sphere(2.5)),
         (arrays.ball(6.0), Shape.sphere(6.0)),
@@ -31,7 +31,7 @@ def simple() -> list[tuple[arrays.Shapes, Shape]]:
 
 
 def meshes() -> list[tuple[arrays.Shapes, Shape]]:
-    """Shapes that both sides sample."""
+    """Shapes that Rust and arrays sample."""
     shapes = [Shape.surface(CUBE, CUBES), Shape.triangle(12.0, 10.0, 0.5), Shape.wedge(1.2, 14.0, 12.0, 0.5)]
     return [(arrays.mesh(shape), shape) for shape in shapes]
 
@@ -40,21 +40,21 @@ class Contacts(NamedTuple):
     """Bodies on as many sensors as there are rows."""
 
     number: npt.NDArray[np.int32]
-    """Which of the shapes, `[n, n_bodies]`."""
+    """Index of the shape of each body, `[n, n_bodies]`."""
     position_mm: _Float
-    """`[n, n_bodies, 3]`"""
+    """Positions of the bodies, `[n, n_bodies, 3]`."""
     quaternion: _Float
-    """`(x, y, z, w)`, `[n, n_bodies, 4]`"""
+    """Orientations, `(x, y, z, w)`, `[n, n_bodies, 4]`."""
 
     def by_rust(self, gel: FastGel, shapes: list[Shape], n_threads: int = 1) -> tuple[Any, Any]:
-        """What `FastBatch` reads: pressures and wrenches."""
+        """Pressures and wrenches of `FastBatch`."""
         n, n_bodies = self.number.shape
         poses = np.concatenate([self.position_mm, self.quaternion], axis=-1).reshape(-1, 7)
         batch = gel.batch([Body(shape) for shape in shapes], n_threads)
         return batch.read(poses, self.number.ravel(), n_bodies * np.arange(1, n + 1))
 
     def by_arrays(self, gel: arrays.Gel, shapes: arrays.Shapes, xp: Any = np) -> arrays.Reading:
-        """The same by arrays of a library."""
+        """The output with the arrays of a library."""
         precision = np.dtype(str(gel.points_mm.dtype).rpartition(".")[2])
         pose = (xp.asarray(values.astype(precision)) for values in (self.position_mm, self.quaternion))
         work = compiled(xp, _read)
@@ -63,7 +63,7 @@ class Contacts(NamedTuple):
 
 
 def compiled(xp: Any, function: Any) -> Any:
-    """What JAX, which compiles each step of what is not compiled by itself, does at once."""
+    """The function, compiled if it is of JAX, which otherwise compiles each operation by itself."""
     return importlib.import_module("jax").jit(function) if xp.__name__ == "jax.numpy" else function
 
 
@@ -74,8 +74,9 @@ def _read(gel: arrays.Gel, shapes: arrays.Shapes, number: Any, position_mm: Any,
 def contacts(
     gel: arrays.Gel, n: int, n_bodies: int, n_shapes: int, seed: int = 1, *, tilted: float = 0.2, depth_mm: float = 4.0
 ) -> Contacts:
-    """Bodies of random shapes at random places over a gel of NumPy, from 1 mm above it to `depth_mm` deep.
-    A fifth is turned in any way, the others lean by `tilted` radians or so."""
+    """Bodies of random shapes at random positions over a gel of NumPy, from 1 mm above it to
+    `depth_mm` deep. A fifth has random orientations, the others lean by about `tilted` radians.
+    """
     random = np.random.default_rng(seed)
     low_mm, high_mm = gel.points_mm[:2].min(axis=1), gel.points_mm[:2].max(axis=1)
     place_mm = random.uniform(low_mm, high_mm, (n, n_bodies, 2))

@@ -1,6 +1,7 @@
-"""Puts the doc strings of the compiled library into its type stubs, where editors look for them.
+"""Writes the docstrings of the compiled library into its type stubs, where editors look for them.
 
-`python tests/stubs.py` writes `twintac/_twintac.pyi` anew from the installed package. A test holds that it is up to date.
+`python tests/stubs.py` writes `twintac/_twintac.pyi` anew from the installed package. A test checks
+that it is up to date.
 """
 
 import ast
@@ -14,7 +15,7 @@ STUBS = Path(__file__).parents[1] / "twintac/_twintac.pyi"
 
 
 def documented(stubs: str) -> str:
-    """The stubs, with the library's doc string of each class, function and property."""
+    """The stubs, with the library's docstring of each class, function and property."""
     lines = stubs.splitlines()
     for node in reversed(ast.parse(stubs).body):
         if isinstance(node, ast.ClassDef):
@@ -27,14 +28,18 @@ def documented(stubs: str) -> str:
 
 
 def _doc(owner: object, name: str) -> str:
-    """A doc string of the library's own: Python's methods, such as `__len__`, have one that says nothing of this library."""
+    """The docstring of an object of the library; empty for methods of Python, such as `__len__`,
+    whose docstring does not describe this library.
+    """
     found = inspect.getattr_static(owner, name)
     is_pythons = name == "__new__" or isinstance(found, WrapperDescriptorType)
     return "" if is_pythons else inspect.getdoc(getattr(owner, name)) or ""
 
 
 def _put(lines: list[str], node: ast.ClassDef | ast.FunctionDef, doc: str) -> None:
-    """Puts a doc string under a heading, in the place of the one, or of the `...`, that is there."""
+    """Inserts a docstring under the heading of a class or function. It replaces the docstring or
+    the `...` there.
+    """
     if not doc:
         return
     body = node.body[0]

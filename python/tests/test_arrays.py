@@ -1,4 +1,6 @@
-"""The fast gel as arrays reads what Rust's does, in every library, and its gradients are those of differences."""
+"""Tests that the surrogate of the gel as arrays agrees with Rust in every library, and that its
+gradients agree with differences.
+"""
 
 import json
 from collections.abc import Callable
@@ -13,7 +15,7 @@ from twintac import Body, Coupling, Error, FastGel, Pose, Sensor, SensorBatch, S
 
 LIBRARIES = ("numpy", "torch", "jax")
 SENSORS = ("phystac", "phystac_tip")
-# Of the largest reading.
+# Relative to the largest reading.
 TOLERANCE = 1e-4
 
 
@@ -25,7 +27,7 @@ class Library(NamedTuple):
     like: Any
 
     def array(self, values: Any) -> Any:
-        """Single precision."""
+        """The values as an array of the library, in single precision."""
         return self.xp.asarray(np.asarray(values, np.float32))
 
 
@@ -71,7 +73,7 @@ def test_it_reads_what_rust_reads(sensor: str, n_bodies: int, lib: Library) -> N
 def test_surfaces_of_triangles_are_sampled_as_rust_samples_them(sensor: str, lib: Library) -> None:
     fast = getattr(FastGel, sensor)()
     own, rusts = zip(*meshes(), simple()[0])
-    # Nearly upright they are thicker than they are deep.
+    # Nearly upright shapes are thicker than they are deep.
     drawn = contacts(arrays.load(fast), 150, 2, len(own), depth_mm=2.0)
     leans = np.abs(drawn.quaternion[..., :2]).max(axis=-1, keepdims=True)
     drawn = drawn._replace(quaternion=np.where(leans < 0.1, drawn.quaternion, [0.0, 0.0, 0.0, 1.0]))
@@ -91,7 +93,7 @@ def test_ports_may_lie_between_points_of_all_grids(sensor: str) -> None:
 
 
 def test_a_plane_is_a_box_without_end(gel: arrays.Gel) -> None:
-    # Its frame looks against the gel's.
+    # Its z axis points against that of the gel.
     down, depth_mm = np.array([1.0, 0.0, 0.0, 0.0], np.float32), np.linspace(-1.0, 3.0, 9)
     place_mm = np.stack([0.0 * depth_mm, 0.0 * depth_mm, 8.5 - depth_mm], axis=-1).astype(np.float32)
     planes = arrays.stack([arrays.plane()])
@@ -131,7 +133,7 @@ def every_shape() -> arrays.Shapes:
 
 
 def gradient(lib: Library, function: Callable[..., Any], *given: Any) -> list[Any]:
-    """Gradients of a sum with respect to what is given, in single precision."""
+    """Gradients of a sum with respect to the arguments, in single precision."""
     if lib.name == "jax":
         jax = pytest.importorskip("jax")
         every = tuple(range(len(given)))
@@ -157,7 +159,7 @@ def test_gradients_are_those_of_differences(name: str, sensor: str) -> None:
         reading = arrays.read(gel, chosen, position_mm, arrays.rotation_of(quaternion))
         return (reading.pressure_kpa * weights).sum(-1) + reading.wrench[..., 2] + reading.wrench[..., 4]
 
-    # Along random ways, one of each contact, in which it moves or turns.
+    # Along random directions, one for each contact, in which it moves or rotates.
     given, random, off = (drawn.position_mm, drawn.quaternion), np.random.default_rng(3), []
     slopes = gradient(lib, lambda *own: felt(gel, lib.xp, *own).sum(), *given)
     for argument, slope in enumerate(slopes):
@@ -175,7 +177,8 @@ def test_gradients_are_numbers_everywhere(name: str) -> None:
     lib = library(name)
     gel, shapes = arrays.load(FastGel.phystac(), like=lib.like), every_shape()
     n = len(shapes.grown_mm)
-    # Upright above points and ports, with surfaces, edges and middles exactly on points, far away, and at no distance at all.
+    # Upright above points and ports, with surfaces, edges and middles exactly at points, far away,
+    # and at zero distance.
     heights_mm = [8.5, 8.0, 7.0, 6.0, 5.5, 4.5, 3.5, 2.5, 0.0, 9.0, 10.5, 11.0, 1e3, 1e6]
     places_mm = [(0.0, 0.0), (-4.0, 4.0), (1.0, 0.0), (1.0, 1.0), (17.0, 9.0), (-1e6, 0.0)]
     grid = np.array([[[x, y, z]] for x, y in places_mm for z in heights_mm])
@@ -309,7 +312,10 @@ def test_friction_and_loss_are_those_of_rust(sensor: str, n_bodies: int, lib: Li
         for ours, theirs in zip((found.pressure_kpa, found.wrench, found.wrench_of_bodies), (*expected, batch.wrench_of_touches())):
             ours = np.asarray(ours).reshape(theirs.shape)
             assert np.abs(ours - theirs).max() < TOLERANCE * np.abs(theirs).max()
-    assert np.abs(np.asarray(held.force_n)).max() > 0.1
+        slips = batch.slip_of_touches()
+        ours = np.asarray(found.slip_mm_per_s).reshape(slips.shape)
+        assert np.abs(ours - slips).max() < 1e-3 * max(1.0, np.abs(slips).max())
+    assert np.abs(np.asarray(held.force_n)).max() > 0.1 and np.abs(slips).max() > 1.0
 
 
 @pytest.mark.parametrize("name", LIBRARIES[1:])

@@ -1,4 +1,4 @@
-"""Recordings through Arrow, for whatever reads it."""
+"""Tests of recordings through Arrow."""
 
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def test_a_stream_outlives_its_recording() -> None:
     n_frames = len(recording.columns()["time_s"])
     stream = recording.__arrow_c_stream__()
     del recording
-    del stream  # which nobody took
+    del stream  # which was not consumed
     table = pyarrow.table(Recording.import_csv(DATA / "import.toml", DATA / "presses.csv"))
     assert table.num_rows == n_frames
 

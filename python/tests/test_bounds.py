@@ -1,4 +1,6 @@
-"""Every count has a bound, and every argument a name: what cannot be is refused before anything is allocated."""
+"""Tests that every count has a bound and every error names its argument: values out of range are
+refused before memory is allocated.
+"""
 
 from collections.abc import Callable
 from typing import Any

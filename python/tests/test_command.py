@@ -1,4 +1,4 @@
-"""The command is the program."""
+"""Tests that the package's command is the program."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ def test_what_is_wrong_is_told_on_standard_error(tmp_path: Path) -> None:
 
 
 def test_runs_know_the_package_as_their_program(trained: Path) -> None:
-    """The command keeps the stages of a run that Python has made: both are one build."""
+    """The command keeps the stages of a run that Python has made, because both are one build."""
     twintac.Run.open(trained).finish(progress=False)
     before = {path: path.stat().st_mtime_ns for path in trained.rglob("stage.json")}
     assert run_command("train", "--run", trained).returncode == 0

@@ -1,4 +1,4 @@
-"""Data sets of simulated presses, their shards, and recordings as LeRobot reads them."""
+"""Tests of data sets of simulated presses, their shards, and recordings in LeRobot's format."""
 
 import json
 import sys
@@ -66,7 +66,7 @@ def test_what_is_wrong_is_an_error(tmp_path: Path) -> None:
         (lambda: Dataset(fast=True, indenters=["thumb"]), "thumb"),
         (lambda: Dataset(protocol="none.toml"), "none.toml"),
         (lambda: fast().make(tmp_path, 3, 2), "no shard 3/2"),
-        (lambda: Dataset.check(tmp_path / "none"), "is no data set"),
+        (lambda: Dataset.check(tmp_path / "none"), "is not a data set"),
     ):
         with pytest.raises(twintac.Error, match=words):
             raised()
@@ -90,7 +90,7 @@ def test_a_task_writes_what_a_process_does(tmp_path: Path, monkeypatch: pytest.M
 
 
 def lerobot_columns(n_taxels: int) -> dict[str, tuple[str, int]]:
-    """Type and length of what LeRobot 3.0 asks for, and of ours."""
+    """Type and length of the columns that LeRobot 3.0 requires, and of the additional ones."""
     return {
         "observation.state": ("float", 7),
         "observation.tactile": ("float", n_taxels),

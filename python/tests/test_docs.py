@@ -1,16 +1,21 @@
-"""Every block of code in the book and in the READMEs that its readers see is run, or read by the program that would run it.
+"""Tests that run every block of code in the book and in the READMEs, or check it with the program
+that would run it.
 
-What stands behind the three backquotes says how:
+The text after the three backquotes of a block defines what is done:
 
-- `sh`: run in bash. `python`: run. Both in the order of the page, in a folder of the page's own that has what a checkout has; Python's names are kept from block to block.
-- Any language with `title="NAME.SUFFIX"`: a file of that name, which a later block of the page has to name.
-- `text`: what the block before it prints; `...` stands for anything. With a title: a drawing, which has no command.
-- `toml` with a title that is no file's name: settings of a run, which are read.
-- `sh` or `python` with any other title, which says why: not run. Programs read the options of their commands, mypy reads snippets.
+- `sh`: run in bash. `python`: run. Both in the order of the page, in a folder of the page's own
+  that has the content of a checkout; Python's names are kept from block to block.
+- Any language with `title="NAME.SUFFIX"`: a file of that name, which a later block of the page has
+  to name.
+- `text`: the expected output of the block before; `...` stands for any text. With a title: a
+  drawing, which has no command.
+- `toml` with a title that is not the name of a file: settings of a run, which are read.
+- `sh` or `python` with any other title, which gives a reason: not run. Programs check the options
+  of their commands, mypy checks snippets.
 - `rust`: a test of the crate `twintac`, whose documentation includes the page.
 
-A block that is none of these fails. What is run elsewhere is only read here: `pip install`, with which `python/check.sh` begins, and `cargo` in README.md, which is for
-`cargo xtask readme`.
+Any other block fails. Commands that other tests run are only checked here: `pip install`, with
+which `python/check.sh` begins, and `cargo` in README.md, which `cargo xtask readme` runs.
 """
 
 import contextlib
@@ -81,7 +86,7 @@ WITH_BLOCKS = {str(path.relative_to(ROOT)): found for path in PAGES if (found :=
 
 
 def commands(code: str) -> list[list[str]]:
-    """The words of each command of a shell's block."""
+    """The words of each command of a shell block."""
     found: list[list[str]] = []
     for line in code.replace("\\\n", " ").splitlines():
         lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
@@ -97,12 +102,12 @@ def commands(code: str) -> list[list[str]]:
             elif not ends:
                 command.append(word)
         found.append(command)
-    is_before = re.compile(r"time|[A-Z]+=.*")  # the program
+    is_before = re.compile(r"time|[A-Z]+=.*")  # the program comes next
     return [list(dropwhile(is_before.fullmatch, command)) for command in found if command]
 
 
 def read_command(command: list[str]) -> None:
-    """Has a command's program read its options."""
+    """Checks the options of a command with its program."""
     program, *words = command
     said = " ".join(command)
     if program == "twintac":
@@ -131,7 +136,7 @@ def read_command(command: list[str]) -> None:
 
 
 def read_settings(block: Block, folder: Path) -> None:
-    """Has the program read settings of a run."""
+    """Checks settings of a run with the program."""
     file = folder / f"settings-{block.line}.toml"
     file.write_text(block.code)
     given = ["--sensor", ROOT / "sensors/phystac.toml", "--import", DATA / "import.toml", "--recordings", DATA / "presses.csv"]
@@ -140,14 +145,14 @@ def read_settings(block: Block, folder: Path) -> None:
 
 
 class Session:
-    """A page's folder and Python's names."""
+    """The folder of a page, and its Python names."""
 
     def __init__(self, page: str) -> None:
         self.page = page
         self.names: dict[str, Any] = {"__name__": "__main__"}
 
     def run(self, block: Block) -> str:
-        """Runs a block. What it prints."""
+        """Runs a block. Returns its output."""
         place = f"{self.page}:{block.line}"
         if block.language == "python":
             printed = io.StringIO()
@@ -163,7 +168,7 @@ class Session:
 
 @pytest.fixture(scope="session")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What `twintac demo` leaves. On pages it finds this done."""
+    """The result of `twintac demo`, which pages use."""
     folder = tmp_path_factory.mktemp("demo")
     ran = subprocess.run([BIN / "twintac", "demo"], cwd=folder, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
@@ -207,7 +212,7 @@ def test_page(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reques
             printed = None if read else session.run(block)
         else:
             assert block.language == "python", f"{place}: nothing runs `{block.language}`"
-            printed = session.run(block) if block.is_run else None  # the others are mypy's
+            printed = session.run(block) if block.is_run else None  # mypy checks the others
 
 
 def test_snippets_that_are_not_run_have_no_wrong_names_and_types(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What is wrong is an exception that says what, where, and what to do."""
+"""Tests of exceptions: they say what is wrong, where, and what to do."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -178,7 +178,7 @@ def test_sensors_refuse_what_cannot_be(ball: Body) -> None:
 def test_things_that_a_gel_holds_are_told_apart(ball: Body) -> None:
     gel, coupling = FastGel.phystac(), Coupling(Sensor.phystac(), friction=0.8)
     sensors, places = SensorBatch(gel, [ball], 1, coupling=coupling), np.array([[-8.0, 0.0, 8.0], [8.0, 0.0, 8.0]])
-    for touch_id, match in ((None, "`touch_id` is missing"), ([1, 1], "touched twice by the thing 1"), ([1], "has 1 numbers"), ([0.5, 1.0], "integers")):
+    for touch_id, match in ((None, "`touch_id` is missing"), ([1, 1], "touched twice by the body 1"), ([1], "has 1 numbers"), ([0.5, 1.0], "integers")):
         with pytest.raises(Error, match=match) as caught:
             sensors.step(0.01, places, [0, 0], [2], touch_id=touch_id)
         assert caught.value.field == "touch_id"

@@ -1,4 +1,4 @@
-"""Every example runs."""
+"""Tests that run every example."""
 
 import json
 from pathlib import Path

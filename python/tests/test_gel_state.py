@@ -1,4 +1,4 @@
-"""A gel that is pressed frame by frame, along paths, and by twins."""
+"""Tests of gels that are pressed frame by frame, along paths, and by twins."""
 
 import json
 import time
@@ -53,11 +53,11 @@ def test_a_ball_touches_where_its_lowest_point_meets_the_top(touch: Pose) -> Non
 def test_a_force_that_the_sensor_does_not_stand_is_refused_at_once(gel: Gel, touch: Pose) -> None:
     state = pressed(gel, touch)
     started = time.monotonic()
-    with pytest.raises(Error, match="1000 N, the sensor stands 212 N") as caught:
+    with pytest.raises(Error, match="1000 N, the sensor withstands 212 N") as caught:
         state.step(0.1, moved(touch, 0.0, 0.0), force_n=1000.0)
     assert caught.value.field == "force_n"
     poses = [[*moved(touch, 0.0, depth_mm).position_mm] for depth_mm in (-0.1, 0.1)]
-    with pytest.raises(Error, match="stands 212 N"):
+    with pytest.raises(Error, match="withstands 212 N"):
         gel.follow(PressPath("sphere-25", [0.0, 1.0], poses, force_n=[np.nan, 1000.0]), progress=False)
     assert time.monotonic() - started < 2.0
     state.step(0.1, moved(touch, 0.0, 0.1), force_n=1.0)
@@ -88,7 +88,8 @@ def test_friction_resists_what_slides(touch: Pose) -> None:
     state.step(0.1, moved(touch, 2.0, 0.9))
     force_n, torque_n_mm = state.force_n, state.torque_n_mm
     assert 0.2 < force_n[0] / -force_n[2] < 0.55  # Coulomb's limit
-    # The force acts where the ball touches, at its origin: far less than its radius off.
+    # The force acts where the ball touches, at its origin: the lever arm is far smaller than the
+    # radius.
     assert torque_n_mm.shape == (3,) and np.linalg.norm(torque_n_mm) < 3.0 * np.linalg.norm(force_n)
 
 

@@ -1,4 +1,4 @@
-"""Tasks as Gymnasium environments."""
+"""Tests of the tasks as Gymnasium environments."""
 
 import importlib.util
 import subprocess

@@ -1,4 +1,4 @@
-"""No file of the package imports another one that, by whatever way, imports it."""
+"""Tests that the files of the package have no circular imports."""
 
 import ast
 from pathlib import Path
@@ -14,7 +14,9 @@ def module_of(file: Path) -> str:
 
 
 def imported(tree: ast.Module) -> set[str]:
-    """Modules and names that a file imports when it is read, or later; `twintac.a.b` for `from twintac.a import b`."""
+    """Modules and names that a file imports, at once or later; `twintac.a.b` for
+    `from twintac.a import b`.
+    """
     found: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -25,7 +27,7 @@ def imported(tree: ast.Module) -> set[str]:
 
 
 def circles(imports: dict[str, set[str]]) -> set[str]:
-    """Files that reach themselves."""
+    """Files that import themselves, directly or through others."""
 
     def reached(start: str) -> set[str]:
         found: set[str] = set()
@@ -45,7 +47,7 @@ def test_no_file_imports_itself_by_others() -> None:
     imports: dict[str, set[str]] = {}
     for name, file in files.items():
         names = {found for own in imported(ast.parse(file.read_text())) for found in (own, own.rpartition(".")[0])}
-        # A name that the front page passes on is not an import of the page.
+        # A name that `twintac/__init__.py` passes on is not an import of that file.
         front = {"twintac"} if name.startswith("twintac.") else set()
         imports[name] = {found for found in names - front - {name} if found in files}
     assert circles(imports) == set()

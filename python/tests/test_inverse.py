@@ -1,4 +1,4 @@
-"""From readings back to contacts, by tables and by twins, and to the floor's pressure."""
+"""Tests of contact estimation, by tables and twins, and of the pressure at the base of the gel."""
 
 from pathlib import Path
 
@@ -52,7 +52,7 @@ def test_measured_places_are_enough(table: ReadingTable) -> None:
 
 
 def readings(depth_mm: float) -> npt.NDArray[np.float32]:
-    """At all places, `[1, n_y, n_x, 8]`."""
+    """Readings at all locations, `[1, n_y, n_x, 8]`."""
     y_mm, x_mm = (axis.ravel() for axis in np.meshgrid(Y_MM, X_MM, indexing="ij"))
     places = np.stack([x_mm, y_mm, np.full(x_mm.shape, 8.5 - depth_mm)], axis=1)
     return FastGel.phystac().batch([Body(BALL)]).read(places)[0].reshape(1, len(Y_MM), len(X_MM), 8)
@@ -117,7 +117,8 @@ def test_a_twin_finds_where_it_is_pressed(trained: Path) -> None:
     assert inverse.shapes == ["sphere-25"] and "simulating" in steps
     tracker, contacts, before_s = inverse.start("simulated"), [], 0.0
     for frame, time_s in enumerate(predicted.time_s):
-        is_lost = np.arange(8) == frame % 16  # a taxel at a time now and then: its last reading stands
+        # Now and then one taxel is lost; its last reading is used.
+        is_lost = np.arange(8) == frame % 16
         readings_kpa = np.where(is_lost, np.nan, predicted.readings_kpa[frame])
         contacts.append(tracker.update(time_s - before_s, readings_kpa))
         before_s = time_s

@@ -1,4 +1,4 @@
-"""Long calls let other threads run, tell of progress, and end on Ctrl-C."""
+"""Tests that long calls let other threads run, report progress, and end on Ctrl-C."""
 
 import os
 import signal
@@ -18,7 +18,7 @@ SHORT = {"simulate": {"edges_per_height": 4.0, "edges_per_contact_radius": 4.0},
 
 
 def turns_while(work: Callable[[], object]) -> tuple[int, float]:
-    """How often this thread had its turn while another one worked, and how long that took, s."""
+    """How often this thread ran while another one worked, and the duration, s."""
     worker = threading.Thread(target=work)
     n_turns, started = 0, time.monotonic()
     worker.start()
@@ -43,7 +43,7 @@ def test_a_batch_lets_other_threads_run() -> None:
 
 @pytest.fixture(autouse=True)
 def hears_ctrl_c() -> Iterator[None]:
-    """A program that was started in the background may ignore it."""
+    """Makes Ctrl-C effective: a program that was started in the background may ignore it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -115,7 +115,7 @@ def test_ctrl_c_ends_a_step_of_a_gel_which_is_made_all_the_same() -> None:
     with pytest.raises(KeyboardInterrupt):
         state.step(0.1, deep)
     waited_s = time.monotonic() - started
-    assert state.gel_from_indenter == deep  # which waits for the step
+    assert state.gel_from_indenter == deep  # this waits for the step
     assert waited_s < 0.5 * (time.monotonic() - started)
 
 

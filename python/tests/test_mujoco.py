@@ -1,4 +1,6 @@
-"""Sensors in MuJoCo: every kind of geom is felt as the same shape by itself, forces are right, and many worlds are as one."""
+"""Tests of sensors in MuJoCo: every kind of geom gives the readings of the same shape without
+MuJoCo, forces are right, and many worlds behave as single ones.
+"""
 
 from collections.abc import Callable
 
@@ -40,7 +42,7 @@ def gel_from_world(data: mujoco.MjData) -> tuple[Array, Array]:
     return np.asarray(site.xpos), np.asarray(site.xmat).reshape(3, 3)
 
 
-# A geom, and how far below its middle its lowest point is, m.
+# A geom, and the distance of its lowest point below its middle, m.
 GEOMS = {
     "sphere": ('type="sphere" size="0.0125"', 0.0125, Shape.sphere(12.5)),
     "box": ('type="box" size="0.006 0.006 0.01"', 0.01, Shape.box((12.0, 12.0, 20.0), 0.0)),
@@ -75,7 +77,7 @@ def test_a_plane_is_felt_wherever_its_frame_is() -> None:
     touch = TouchSensors(found, ["touch"])
     readings = []
     for x_m in (0.0, -0.7):
-        # The board is turned over, so that its gel looks down onto the plane.
+        # The board is turned over, so that the gel faces the plane below.
         data.qpos[:] = [x_m, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]
         mujoco.mj_forward(found, data)
         origin, turn = gel_from_world(data)
@@ -86,14 +88,16 @@ def test_a_plane_is_felt_wherever_its_frame_is() -> None:
         assert turn[2, 2] == pytest.approx(-1.0)
         data.qpos[2] += TOP_M - 0.001 - origin[2]
         mujoco.mj_forward(found, data)
-        touch.reset()  # it has not slid there
+        touch.reset()  # the sensor has not slid to this position
         readings.append(touch.update(data)[0, 0].copy())
     assert readings[0].min() > 1.0
     assert readings[0] == pytest.approx(readings[1], rel=1e-3)
 
 
 def resting(contact: bool) -> float:
-    """The force under a block of 100 g at rest, N: on the gel, or on a box where the gel is, by MuJoCo's contact."""
+    """The force under a block of 100 g at rest, N: on the gel, or with MuJoCo's contact on a box in
+    place of the gel.
+    """
     pad = f'<geom type="box" size="0.017 0.009 {0.5 * TOP_M}" pos="0 0 {0.5 * TOP_M}"/>' if contact else ""
     spec = mujoco.MjSpec.from_string(f"""
         <mujoco><option timestep="0.001"/><worldbody>

@@ -1,4 +1,6 @@
-"""Geoms are felt one by one, as they are now, by a sensor whose gel and description are one."""
+"""Tests that geoms are read individually, in their current form, by a sensor whose gel and
+description match.
+"""
 
 import mujoco
 import mujoco.batch
@@ -41,7 +43,7 @@ def test_a_geom_of_another_size_is_felt_as_it_is() -> None:
     scene.data.qpos[2] = 0.0166
     scene.step(1000)
     assert scene.height_mm == pytest.approx(16.3, abs=0.1)
-    # In the middle of a contact, and one of two.
+    # The size changes during a contact, for one geom of two.
     scene.model.geom("left").size[2] = 0.0082
     scene.step(1000)
     left, right = (float(scene.data.geom(name).xpos[2]) for name in ("left", "right"))
@@ -190,7 +192,8 @@ def test_a_floor_holds_what_slides_over_it(floor: str) -> None:
         mujoco.mj_forward(found, data)
         data.qfrc_applied[:] *= 1.0
         touch.update(data)
-    # It moves along the x of the gel that looks down: the floor holds it back, with Coulomb's limit.
+    # It moves along x of the gel, which faces down. Friction with the floor resists, at Coulomb's
+    # limit.
     normal_n, along_n = float(touch.wrench[0, 0, 2]), float(touch.wrench[0, 0, 0])
     assert normal_n < -1.0
     assert along_n == pytest.approx(0.5 * normal_n, rel=0.05)

@@ -1,4 +1,6 @@
-"""What gels push is right whatever else is done to the data between steps, or it is refused."""
+"""Tests that the forces of gels are right whatever else is done to the data between steps, or that
+an error is raised.
+"""
 
 import mujoco
 import mujoco.batch
@@ -35,7 +37,7 @@ def test_a_state_that_is_written_back_through_qpos_goes_on_from_there() -> None:
     scene.data.qpos[:], scene.data.qvel[:] = qpos, 0.0
     scene.touch.reset()
     scene.step(20)
-    # It falls from where it is: nothing is under it yet.
+    # The block falls from its current position: nothing is under it yet.
     assert scene.data.qvel[2] == pytest.approx(-9.81 * 0.02, rel=0.01)
     check_rests(scene)
 
@@ -137,7 +139,7 @@ def test_the_time_step_may_change() -> None:
     scene = at_rest()
     scene.model.opt.timestep = 0.0005
     with pytest.raises(ValueError, match="since the last update"):
-        scene.step()  # the step before was one of 1 ms
+        scene.step()  # the previous step was one of 1 ms
     scene.touch.reset()
     check_rests(scene, 1000)
 

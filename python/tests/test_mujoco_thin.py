@@ -1,4 +1,4 @@
-"""Coins, plates and hollow bodies are carried by a gel as thick ones are: nothing falls through."""
+"""Tests that a gel carries coins, plates and hollow bodies as it carries thick bodies."""
 
 import pytest
 
@@ -9,7 +9,7 @@ HALF_M = {"coin": 'type="cylinder" size="0.006 {half_m}"', "plate": 'type="box" 
 
 
 def rests_mm(kind: str, thickness_mm: float, push_n: float, lean: float = 0.0) -> float:
-    """How deep the lowest point of a thing is in the gel after it was pushed for 0.6 s, mm."""
+    """Depth of the lowest point of a body in the gel after it was pushed for 0.6 s, mm."""
     half_m = 0.5e-3 * thickness_mm
     things = COIN.format(z_m=0.0086 + half_m, geom=HALF_M[kind].format(half_m=half_m))
     scene = Scene(palm(things))

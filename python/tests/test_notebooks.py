@@ -1,4 +1,4 @@
-"""Every notebook runs from its first cell to its last."""
+"""Tests that run every notebook from its first cell to its last."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Plots show the numbers of the results, and say what cannot be drawn."""
+"""Tests that plots show the numbers of the results, and that wrong arguments raise errors."""
 
 import sys
 from pathlib import Path
@@ -19,7 +19,7 @@ COARSE = {"edges_per_height": 4.0, "edges_per_contact_radius": 4.0}
 
 
 def check(axes: "list[Axes]", along: "np.ndarray[tuple[int, ...], np.dtype[np.float64]]") -> None:
-    """All axes have the same abscissa, and units in their labels."""
+    """Checks that all axes have the same abscissa, and units in their labels."""
     for one in axes:
         assert one.get_ylabel().endswith((" mm", " N", " kPa"))
         for line in one.get_lines():

@@ -1,4 +1,6 @@
-"""Values go from process to process, forked processes work, and threads share objects."""
+"""Tests that values pass from process to process, that forked processes work, and that threads
+share objects.
+"""
 
 import copy
 import os
@@ -47,7 +49,7 @@ PLACES = np.tile([0.0, 0.0, 7.5], (64, 1))
 
 
 def in_fork(work: Callable[[], object], timeout_s: float = 60.0) -> None:
-    """Does work in a forked process, which has to end well in time."""
+    """Calls a function in a forked process, which has to succeed in time."""
     child = os.fork()
     if child == 0:
         code = 1
@@ -143,7 +145,7 @@ def test_a_reader_is_read_by_the_process_that_opened_it() -> None:
 
 
 def figures(value: object) -> object:
-    """All that an object says, as texts that tell every bit."""
+    """All numbers of an object, as texts with every bit."""
     if isinstance(value, Sensor | Shape | Body | Imperfection | Gel | FastGel | Run | Coupling):
         return repr(value)
     names = [name for name in dir(value) if not name.startswith("_")]

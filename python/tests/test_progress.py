@@ -1,4 +1,4 @@
-"""Who follows long work, and what a person sees."""
+"""Tests of the display of progress."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Frames of the emulated sensor, as they come."""
+"""Tests of the frames of the emulated sensor, as they arrive."""
 
 import os
 import signal

@@ -1,4 +1,6 @@
-"""Sensors in simulators on devices: a block rests on a palm with its weight and reads what `twintac.mujoco` reads, in each of them."""
+"""Tests of sensors in simulators on devices: in each of them, a block rests on a palm with its
+weight, and the readings are those of `twintac.mujoco`.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -43,7 +45,7 @@ def poses_of(worlds: list[Any]) -> Poses:
 
 
 def stepped(model: Any, found: Scene, n_steps: int, start: Callable[[Any, int], None] = lambda data, world: None, n_worlds: int = 1) -> tuple[list[Any], Touch]:
-    """Worlds of MuJoCo's own, pushed by `moment`."""
+    """Worlds of MuJoCo, with the forces of `moment`."""
     worlds = [mujoco.MjData(model) for _ in range(n_worlds)]
     for world, data in enumerate(worlds):
         start(data, world)
@@ -60,7 +62,7 @@ def stepped(model: Any, found: Scene, n_steps: int, start: Callable[[Any, int], 
 
 
 def beside(model: Any, n_steps: int) -> tuple[Array, Array]:
-    """What `twintac.mujoco` reads, and how hard it pushes."""
+    """The readings and forces of `twintac.mujoco`."""
     data = mujoco.MjData(model)
     touch = TouchSensors(model, ["touch"], geoms=["block"])
     for _ in range(n_steps):
@@ -71,7 +73,9 @@ def beside(model: Any, n_steps: int) -> tuple[Array, Array]:
 
 
 def is_at_rest(pressure_kpa: Any, wrench: Any, expected: tuple[Array, Array]) -> None:
-    """All worlds carry the block's weight, and read what `twintac.mujoco` reads, within 1 %."""
+    """Checks that all worlds carry the block's weight, and that readings agree with those of
+    `twintac.mujoco` within 1 %.
+    """
     pressure_kpa, wrench = np.asarray(pressure_kpa), np.asarray(wrench)
     assert wrench.shape == (N_WORLDS, 1, 6)
     assert -wrench[:, 0, 2] == pytest.approx(np.full(N_WORLDS, WEIGHT_N), rel=0.01)
@@ -249,7 +253,7 @@ def test_what_a_gel_gets_its_body_gets_and_what_touches_gets_the_opposite() -> N
     on_palm, on_rod = touch.push[0]
     assert -on_palm[2] == pytest.approx(float(-touch.wrench[0, 0, 2])) and on_palm[2] < -0.05
     assert on_palm[:3] == pytest.approx(-on_rod[:3])
-    # About one point, the torques are each other's opposites, too: nothing turns by itself.
+    # About one point, the torques are opposite, too, so the angular momentum does not change.
     about_palm = on_rod[3:] + np.cross(data.xipos[found.body[1]] - data.xipos[found.body[0]], on_rod[:3])
     assert about_palm == pytest.approx(-on_palm[3:], abs=1e-6)
 

@@ -1,4 +1,4 @@
-"""Editors show of each class and function what the library says of it."""
+"""Tests that the stubs have the docstrings of the compiled library, which editors show."""
 
 from inspect import getdoc, isclass
 from types import WrapperDescriptorType

@@ -1,4 +1,6 @@
-"""Numbers are those of the command line, shapes are as the docs say, and the same call gives the same bits."""
+"""Tests that numbers agree with those of the command line, that shapes are as documented, and that
+the same call gives the same bits.
+"""
 
 import copy
 import json

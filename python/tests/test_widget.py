@@ -1,4 +1,4 @@
-"""The widget of a notebook presses the gel as its sliders say."""
+"""Tests that the notebook widget presses the gel according to its sliders."""
 
 
 import pytest
@@ -31,7 +31,7 @@ def test_another_indenter_presses_where_the_first_was() -> None:
     widget.depth_mm.value = 0.8
     first = widget.state.force_n[2]
     widget.indenter.value = "cube"
-    assert widget.state.force_n[2] < 1.2 * first  # more of a cube touches than of a ball
+    assert widget.state.force_n[2] < 1.2 * first  # a cube touches with a larger area than a ball
     state = widget.state
     assert state.gel_from_indenter == Pose(state.gel_from_indenter.position_mm) if state.gel_from_indenter else False
 

@@ -1,8 +1,10 @@
 """Barometric touch sensors and their digital twin.
 
-Press a simulated gel, learn from recordings what a sensor's barometers make of the gel's pressure, and ask the trained twin what it would
-read. Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board;
-presses go along -z. Numbers say where they come from: `"real"`, `"emulated"` or `"simulated"`.
+The package presses a simulated gel, trains a twin that predicts the readings of a sensor's
+barometers from the gel's pressure, and computes readings with the trained twin. Lengths are in mm,
+forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at
+the board; presses go along -z. Each number has its provenance: `"real"`, `"emulated"` or
+`"simulated"`.
 """
 
 from twintac._error import Error

@@ -1,4 +1,4 @@
-"""The command `twintac`: the same program as that of Rust, in this process."""
+"""The command `twintac`: the program of the Rust workspace, run in this process."""
 
 import signal
 import sys
@@ -7,6 +7,7 @@ from twintac._twintac import command
 
 
 def main() -> None:
-    """Does what the command line asks for."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends the program at once; `record` listens to it by itself
+    """Runs the command with the arguments of the command line, and exits with its exit code."""
+    # Ctrl-C ends the program at once; `record` handles it itself.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.exit(command())

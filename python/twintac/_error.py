@@ -1,13 +1,13 @@
-"""What can go wrong."""
+"""The exception of the package."""
 
 
 class Error(ValueError):
-    """What is wrong, where, and what to do."""
+    """An error in a file or an argument. The message says what is wrong, where, and what to do."""
 
     file: str | None
-    """The file, as it was named."""
+    """The file, as the caller named it; `None` if the error is not about a file."""
     line: int | None
-    """Line, from 1."""
+    """The line of the file, from 1."""
     field: str | None
     """The field, the column or the argument."""
 

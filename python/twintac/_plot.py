@@ -1,4 +1,6 @@
-"""Plots of results with Matplotlib, whose axes are returned to be restyled."""
+"""Plots of results with Matplotlib. The functions return the axes, so that callers can restyle
+them.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ READINGS = "above zero, kPa"
 
 
 def pressed(result: Pressed, axes: Sequence[Axes] | None) -> list[Axes]:
-    """Readings and force over depth."""
+    """Plots readings and force over depth."""
     readings, force = panels(axes, 2)
     lines(readings, result.depth_mm, result.readings_kpa, numbered(result.readings_kpa))
     readings.set(title=result.provenance, ylabel="pressure at ports, kPa")
@@ -31,7 +33,7 @@ def pressed(result: Pressed, axes: Sequence[Axes] | None) -> list[Axes]:
 
 
 def followed(result: Followed, axes: Sequence[Axes] | None) -> list[Axes]:
-    """Readings, force and place over time."""
+    """Plots readings, force and the indenter's position over time."""
     readings, force, place = panels(axes, 3)
     lines(readings, result.time_s, result.readings_kpa, numbered(result.readings_kpa))
     readings.set(title=titled(result.provenance, result.failure), ylabel="pressure at ports, kPa")
@@ -43,7 +45,9 @@ def followed(result: Followed, axes: Sequence[Axes] | None) -> list[Axes]:
 
 
 def prediction(result: Prediction, axes: Sequence[Axes] | None) -> list[Axes]:
-    """Readings with their intervals, force and depth over time; grey where the twin should not be trusted."""
+    """Plots readings with their intervals, force and depth over time; times at which the prediction
+    is not reliable have a grey background.
+    """
     readings, force, depth = panels(axes, 3)
     drawn = lines(readings, result.time_s, result.readings_kpa, numbered(result.readings_kpa))
     half_width_kpa = result.half_width_kpa
@@ -67,7 +71,7 @@ def prediction(result: Prediction, axes: Sequence[Axes] | None) -> list[Axes]:
 
 
 def recording(result: Recording, press: SupportsIndex | None, axes: Sequence[Axes] | None) -> list[Axes]:
-    """Readings, force and height of one press over time."""
+    """Plots readings, force and height of one press over time."""
     try:
         number = 0 if press is None else index(press)
     except TypeError:
@@ -91,7 +95,7 @@ def recording(result: Recording, press: SupportsIndex | None, axes: Sequence[Axe
 
 
 def pressure_map(result: PressureMap, bounds_mm: Sequence[Sequence[float]], axes: Axes | None) -> Axes:
-    """The map in the gel's plane."""
+    """Plots the map in the plane of the gel."""
     axes = axes if axes is not None else subplots(1)[0]
     (left, bottom, _), (right, top, _) = bounds_mm
     image = axes.imshow(result.pressure_kpa, origin="lower", extent=(left, right, bottom, top), aspect="equal")
@@ -101,24 +105,26 @@ def pressure_map(result: PressureMap, bounds_mm: Sequence[Sequence[float]], axes
 
 
 def titled(provenance: str, failure: str | None) -> str:
-    """Where numbers come from, and why they end."""
+    """The provenance of numbers, and the reason if they end early."""
     return provenance if failure is None else f"{provenance}, ends early: {failure}"
 
 
 def numbered(readings: npt.NDArray[np.float64]) -> list[str]:
-    """Taxels by their place in a row of readings."""
+    """Names of taxels: their indices in a row of readings."""
     return [f"taxel {taxel}" for taxel in range(readings.shape[1])]
 
 
 def lines(axes: Axes, along: npt.NDArray[np.float64], values: npt.NDArray[np.float64], labels: Sequence[str]) -> list[Any]:
-    """A line for each column."""
+    """Plots a line for each column of `values`."""
     drawn = [axes.plot(along, column, label=label)[0] for column, label in zip(values.T, labels, strict=True)]
     axes.legend(ncols=2 if len(labels) > 4 else 1, fontsize="small")
     return drawn
 
 
 def panels(axes: Sequence[Axes] | None, n: int) -> Sequence[Axes]:
-    """The given axes, or new ones below each other over one abscissa."""
+    """The given axes, or new ones above each other with a common abscissa. Raises `Error` for
+    another number of axes.
+    """
     if axes is None:
         return subplots(n)
     if not hasattr(axes, "__len__") or len(axes) != n:
@@ -127,6 +133,9 @@ def panels(axes: Sequence[Axes] | None, n: int) -> Sequence[Axes]:
 
 
 def subplots(n: int) -> list[Axes]:
+    """New axes above each other with a common abscissa. Raises `ModuleNotFoundError` without
+    Matplotlib.
+    """
     try:
         pyplot = import_module("matplotlib.pyplot")
     except ModuleNotFoundError as absent:

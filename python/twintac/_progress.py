@@ -1,4 +1,4 @@
-"""How far long work is."""
+"""Display of the progress of long calls."""
 
 import sys
 from collections.abc import Callable
@@ -6,12 +6,15 @@ from importlib import import_module
 from typing import Any, Literal, TypeAlias
 
 Progress: TypeAlias = Callable[[str, int, int, str], object] | Literal[False] | None
-"""`None` shows a line on a terminal and in notebooks, `False` nothing. A function hears of each step: the work, steps that are done, all
-steps as far as they are known, and how things stand. At the end of each work both numbers are the same."""
+"""`None` shows a line on a terminal and in notebooks, `False` shows nothing. A function is called
+at each step with the name of the work, the number of finished steps, the total number of steps as
+far as it is known (0 if it is not), and a text about the current state. At the end of each work
+both numbers are equal.
+"""
 
 
 def listener(progress: Progress) -> Callable[[str, int, int, str], object] | None:
-    """What hears of each step, if anybody does."""
+    """The function to call at each step, or `None` if nothing shall be shown."""
     if progress is not None:
         return progress or None
     is_watched = sys.stderr.isatty() or "ipykernel" in sys.modules
@@ -19,7 +22,7 @@ def listener(progress: Progress) -> Callable[[str, int, int, str], object] | Non
 
 
 class _Line:
-    """A line that is written again and again."""
+    """A line on standard error that is overwritten at each step."""
 
     def __call__(self, work: str, done: int, total: int, state: str) -> None:
         end = "\n" if done == total > 0 else ""
@@ -34,7 +37,7 @@ def _bar() -> "_Bar | None":
 
 
 class _Bar:
-    """A bar of tqdm for each work."""
+    """A progress bar of tqdm for each work."""
 
     def __init__(self, tqdm: Any) -> None:
         self._tqdm = tqdm

@@ -66,9 +66,10 @@ __version__: Final[str]
 
 @final
 class Sensor:
-    """A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
+    """A sensor, as its description says: gel, taxels and indenters.
 
-    `Sensor.phystac()` and `Sensor.phystac_tip()` are built in; `Sensor.load` reads the description of any other.
+    `Sensor.phystac()` and `Sensor.phystac_tip()` are built in. `Sensor.load` reads the description
+    of another sensor.
     """
     @staticmethod
     def phystac() -> Sensor:
@@ -78,43 +79,48 @@ class Sensor:
         """PhysTac's fingertip: eight barometers under a dome, 19.2 mm high."""
     @staticmethod
     def load(path: _Path) -> Sensor:
-        """Reads a description (TOML).
+        """Reads a sensor description (TOML).
 
-        Raises `Error` with file, line and field if the description is wrong, and with the file if it cannot be read.
+        Raises `Error` with file, line and field if the description is wrong, and with the file if
+        it cannot be read.
         """
     @property
     def name(self) -> str:
-        """Its name, as the description has it."""
+        """Name of the sensor in its description."""
     @property
     def taxels(self) -> list[str]:
-        """Names of its taxels, in the order of every row of readings."""
+        """Names of the taxels, in the order of every row of readings."""
     @property
     def taxel_positions_mm(self) -> _Float:
         """Centres of the taxels' ports in the gel's frame, mm; `[n_taxels, 3]`."""
     @property
     def bounds_mm(self) -> _Float:
-        """Lowest and highest corner of the box that holds the gel, in the gel's frame, mm; `[2, 3]`."""
+        """Lowest and highest corner of the box that contains the gel, in the gel's frame, mm;
+        `[2, 3]`.
+        """
     @property
     def indenters(self) -> list[str]:
-        """Names of the indenters that it can be pressed with: those that `Press` takes."""
+        """Names of the indenters in the description. `Press` takes one of them."""
     @property
     def rate_hz(self) -> float:
-        """Frames that it gives in a second, Hz."""
+        """Frame rate of the sensor, Hz."""
     def describe(self) -> str:
-        """All that the description says, with units, as a text for people."""
+        """The whole description, with units, as a text for people."""
 
 @final
 class Press:
     """A straight press: down to a depth, a hold, and back up.
 
     - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
-    - `at_mm`: place of the indenter's origin in the gel's plane, mm; the middle of the gel unless given.
+    - `at_mm`: location of the indenter's origin in the gel's plane, x and y, mm; the middle of the
+      gel unless given.
     - `depth_mm`: depth below first touch, mm, above 0.
-    - `spin_rad`: turn of the indenter about the axis of the press, radians.
+    - `spin_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
     - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
-    - `hold_s`: time at full depth, s, an hour at most.
+    - `hold_s`: time at full depth, s, at most an hour.
 
-    Raises `Error`, whose `field` is the argument that cannot be. Whether the sensor has the indenter is seen when it presses.
+    Raises `Error` for a value that is not allowed; its `field` names the argument. Whether the
+    sensor has the indenter is checked when the gel is pressed.
     """
     def __new__(
         cls,
@@ -131,13 +137,13 @@ class Press:
         """Name of one of the sensor's indenters."""
     @property
     def at_mm(self) -> tuple[float, float]:
-        """Place of the indenter's origin in the gel's plane, x and y, mm."""
+        """Location of the indenter's origin in the gel's plane, x and y, mm."""
     @property
     def depth_mm(self) -> float:
         """Depth below first touch, mm."""
     @property
     def spin_rad(self) -> float:
-        """Turn of the indenter about the axis of the press, radians."""
+        """Yaw (rotation of the indenter about the axis of the press), radians."""
     @property
     def speed_mm_per_s(self) -> float:
         """Speed down and up, mm/s."""
@@ -149,92 +155,136 @@ class Press:
 
 @final
 class Gel:
-    """The gel of a sensor, ready to be pressed: a finite-element model with the material of the description.
+    """The gel of a sensor: a finite-element model with the material of the description.
 
-    `settings` are those of the simulation that differ from the usual ones for single presses: `{"edges_per_height": 4.0}`. More edges take longer and
-    err less. Raises `Error`, whose `field` is the setting that cannot be.
+    - `sensor`: the sensor.
+    - `settings`: settings of the simulation that differ from the default ones for single presses,
+      such as `{"edges_per_height": 4.0}`. With more edges, a press takes longer and has a smaller
+      error.
+
+    Raises `Error` for a setting that is not allowed; its `field` names the setting.
     """
     def __new__(cls, sensor: Sensor, settings: dict[str, Any] | None = None) -> Gel: ...
     def press(self, press: Press) -> Pressed:
-        """Presses the gel down to the depth of the press, which takes about a second. A gel whose material relaxes does so at the speed of the press. Ctrl-C ends the wait.
+        """Presses the gel down to the depth of the press, which takes about a second. If the material
+        of the gel relaxes, it does so at the speed of the press. Ctrl-C ends the wait.
 
-        Raises `Error` for an indenter that the sensor does not have, a place beside the gel, and a depth at which the solver finds no equilibrium.
+        - `press`: the press.
+
+        Raises `Error` for an indenter that the sensor does not have, for a location beside the gel,
+        and for a depth at which the solver finds no equilibrium.
         """
     def touch(self, indenter: str, above: Pose) -> Pose:
-        """Where an indenter, lowered from a pose in the gel's frame whose height is ignored, first touches the undeformed gel.
+        """The pose at which an indenter that is lowered first touches the undeformed gel.
 
-        Raises `Error` for an indenter that the sensor does not have, and a place beside the gel.
+        - `indenter`: name of the indenter.
+        - `above`: pose in the gel's frame from which it is lowered; its height is ignored.
+
+        Raises `Error` for an indenter that the sensor does not have, and for a location beside the
+        gel.
         """
     def state(self, indenter: str, poses: Sequence[Pose], *, deadline_ms: float | None = None) -> GelState:
-        """The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go, at least one: the mesh
-        is fine along the straight ways between them, and for the deepest of them. Takes about a second; Ctrl-C ends the wait.
+        """Returns the gel before an indenter presses it. The indenter can then be moved from pose to
+        pose as they come. The call takes about a second; Ctrl-C ends the wait.
 
-        With `deadline_ms`, 1 to 60000, each frame is answered within so many milliseconds of wall time with what is found by then: `GelState.converged` says whether its forces
-        are balanced, `GelState.residual` how nearly. Frames with a `force_n` take the time that they need. Such readings are not reproducible.
+        - `indenter`: name of the indenter.
+        - `poses`: poses in the gel's frame between which the indenter will move, at least one. The
+          mesh is fine along the straight lines between them, and for the deepest of them.
+        - `deadline_ms`: limit of the wall time of each frame, 1 to 60000 ms. A frame is then
+          returned at the limit as far as it is computed: `GelState.converged` says whether its
+          forces are balanced, and `GelState.residual` how nearly. Frames with a `force_n` ignore
+          the limit. Readings with a limit are not reproducible.
 
-        Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a deadline out of its range.
+        Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
+        gel, and for a limit out of its range.
         """
     def follow(self, path: PressPath, *, progress: Progress = None) -> Followed:
-        """Takes an indenter along a path, frame by frame; each takes from some milliseconds to seconds. Ctrl-C ends it before its next frame. A path that cannot be followed
-        to its end is no error: `Followed.failure` says why the frames end early.
+        """Moves an indenter along a path, frame by frame. A frame takes from some milliseconds to
+        seconds. Ctrl-C ends the call before the next frame. If a path cannot be followed to its
+        end, its frames end early, and `Followed.failure` says why; this raises no error.
 
-        Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a point outside the gel or with the name of a taxel.
+        - `path`: the path.
+        - `progress`: display of the progress, see `Progress`.
+
+        Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
+        gel, and for a point that is outside the gel or has the name of a taxel.
         """
 
 @final
 class GelState:
-    """A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. What `Gel.state` returns. It keeps how it is deformed, what its material
-    remembers, and where friction holds it.
+    """A gel that one indenter presses, frame by frame: it is pushed, slides and rotates to poses as
+    they come. `Gel.state` returns it. It keeps the deformation of the gel, the history of its
+    material, and the locations where friction holds it.
     """
     @property
     def provenance(self) -> _Simulated:
-        """What every number is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     def step(self, since_previous_s: float, gel_from_indenter: Pose, *, force_n: float | None = None) -> _Float:
-        """One more frame, `since_previous_s` after the last: the indenter goes straight to a pose in the gel's frame (`gel_from_indenter`). With `force_n`, N, above 0, it then
-        goes down or up, by at most the gel's height, until it presses straight down with that force. The first frame takes no notice of the time.
+        """Computes one more frame: the indenter moves to a pose on a straight line. Small steps take
+        milliseconds on a gel of few nodes (`Gel(sensor, {"max_path_nodes": 4000})`), long steps on
+        a fine gel take seconds. Ctrl-C ends the wait; the step is finished nevertheless.
 
-        Returns the hydrostatic pressure in the gel over each taxel's port, kPa; `[n_taxels]`. Small steps take milliseconds on a gel of few nodes
-        (`Gel(sensor, {"max_path_nodes": 4000})`), long ones on a fine gel seconds. Ctrl-C ends the wait; the step is made all the same.
+        - `since_previous_s`: time since the last frame, s. The first frame ignores it.
+        - `gel_from_indenter`: pose of the indenter in the gel's frame.
+        - `force_n`: force straight down, N, above 0. The indenter then moves down or up from the
+          pose, by at most the gel's height, until it presses with this force.
 
-        Raises `Error` if the solver finds no equilibrium: the gel is then as it was before, and smaller steps may do; for a time below 0, and for a force that is not
-        above 0, is not met, or is more than the sensor stands (`limits.force_n` of its description).
+        Returns the port pressures: the hydrostatic pressure in the gel over each taxel's port, kPa;
+        `[n_taxels]`.
+
+        Raises `Error` if the solver finds no equilibrium. The gel is then as it was before, and
+        smaller steps may succeed. It also raises `Error` for a time below 0, and for a force that
+        is not above 0, is not reached, or is above the limit of the sensor (`limits.force_n` of its
+        description).
         """
     @property
     def gel_from_indenter(self) -> Pose | None:
-        """Where the indenter is, in the gel's frame; `None` before the first frame."""
+        """Pose of the indenter in the gel's frame; `None` before the first frame."""
     @property
     def depth_mm(self) -> float | None:
-        """How far the indenter is below where, at the place and turn of the first of the poses that `Gel.state` was given, it first touches the gel, mm; `None` before the
-        first frame.
+        """Depth below the height at which the indenter first touches the gel at the location and
+        rotation of the first pose that `Gel.state` was given, mm; `None` before the first frame.
         """
     @property
     def converged(self) -> bool | None:
-        """Whether the forces at the last frame are balanced: they are, unless `Gel.state` was given a `deadline_ms` that came first. `None` before the first frame."""
+        """Whether the forces of the last frame are balanced. They always are, unless the `deadline_ms`
+        of `Gel.state` came first. `None` before the first frame.
+        """
     @property
     def residual(self) -> float | None:
-        """What part of the load is unbalanced at the last frame; `None` before the first."""
+        """Fraction of the load that is unbalanced at the last frame; `None` before the first frame."""
     @property
     def force_n(self) -> _Float:
-        """Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. A press straight down has a negative z. Zero before the first frame."""
+        """Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. Its z
+        component is negative if the indenter presses straight down. Zero before the first frame.
+        """
     @property
     def torque_n_mm(self) -> _Float:
-        """Torque of the indenter on the gel about the indenter's origin at the last frame, in the gel's frame, N mm; `[3]`. Zero before the first frame."""
+        """Torque of the indenter on the gel about the indenter's origin at the last frame, in the
+        gel's frame, N mm; `[3]`. Zero before the first frame.
+        """
     def rest(self) -> None:
-        """Takes the indenter away: the gel is as it was before the first frame, and remembers nothing."""
+        """Removes the indenter, and resets the gel to the state before the first frame, without any
+        history.
+        """
 
 @final
 class PressPath:
-    """A path of an indenter over and into a gel, through poses or to forces: down, aside, tilted, and up again. Between its poses the indenter moves evenly.
+    """A path of an indenter over and into a gel, through poses or to forces: down, sideways, tilted,
+    and up again. Between the poses the indenter moves at constant speed.
 
     - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
-    - `time_s`: when it is at each pose, s, increasing; `[n_poses]`.
-    - `gel_from_indenter`: its poses in the gel's frame: place of its origin, mm, and quaternion (x, y, z, w), `[n_poses, 7]`; or the place alone, `[n_poses, 3]`.
-    - `zero`: where heights are counted from: the `"board"`, or `"touch"`, where the indenter first touches at the place and turn of the first pose.
-    - `rate_hz`: frames in a second between the poses, Hz; without it, the poses themselves are the frames.
-    - `force_n`: the force straight down, N, above 0, with which the indenter presses at each pose: it goes down or up from there until it does. NaN where it stays
-      at the pose; `[n_poses]`.
+    - `time_s`: times of the poses, s, increasing; `[n_poses]`.
+    - `gel_from_indenter`: poses of the indenter in the gel's frame: position of its origin, mm, and
+      quaternion (x, y, z, w), `[n_poses, 7]`; or the position alone, `[n_poses, 3]`.
+    - `zero`: origin of heights: `"board"`, or `"touch"`, the height at which the indenter first
+      touches the gel at the location and rotation of the first pose.
+    - `rate_hz`: frame rate between the poses, Hz. Without it, the poses themselves are the frames.
+    - `force_n`: force straight down with which the indenter presses at each pose, N, above 0;
+      `[n_poses]`. The indenter moves down or up from the pose until it has this force. With NaN, it
+      stays at the pose.
 
-    Raises `Error`, whose `field` is what cannot be.
+    Raises `Error` for a value that is not allowed; its `field` names the argument.
     """
     def __new__(
         cls,
@@ -248,9 +298,11 @@ class PressPath:
     ) -> PressPath: ...
     @staticmethod
     def load(path: _Path) -> PressPath:
-        """Reads a path (TOML), as `twintac simulate --path` does. It may also have points in the gel at which the pressure is read, and another direction of forces.
+        """Reads a path from a file (TOML), as `twintac simulate --path` does. A file may also have
+        points in the gel at which the pressure is read, and another direction of forces.
 
-        Raises `Error` with file, line and field if it is wrong, and with the file if it cannot be read.
+        Raises `Error` with file, line and field if the file is wrong, and with the file if it
+        cannot be read.
         """
     @property
     def indenter(self) -> str:
@@ -261,47 +313,62 @@ class PressPath:
 
 @final
 class Followed:
-    """What a gel does along a path: what `Gel.follow` returns. Every array has a row for each frame, up to the last good one."""
+    """The simulated gel along a path: the result of `Gel.follow`. Every array has a row for each
+    frame, up to the last one that was computed.
+    """
     @property
     def provenance(self) -> _Simulated:
-        """What every number here is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     @property
     def failure(self) -> str | None:
-        """Why the frames end before the path does; `None` if they do not."""
+        """Why the frames end before the path does; `None` if they reach its end."""
     @property
     def time_s(self) -> _Float:
         """Time, s; `[n_frames]`."""
     @property
     def position_mm(self) -> _Float:
-        """The indenter's origin in the gel's frame, mm; `[n_frames, 3]`."""
+        """Position of the indenter's origin in the gel's frame, mm; `[n_frames, 3]`."""
     @property
     def depth_mm(self) -> _Float:
-        """How far the indenter is below where, at the place and turn of the first pose, it first touches the gel, mm; `[n_frames]`."""
+        """Depth below the height at which the indenter first touches the gel at the location and
+        rotation of the first pose, mm; `[n_frames]`.
+        """
     @property
     def force_n(self) -> _Float:
-        """Force of the indenter on the gel, in the gel's frame, N; `[n_frames, 3]`. A press straight down has a negative z."""
+        """Force of the indenter on the gel, in the gel's frame, N; `[n_frames, 3]`. Its z component is
+        negative if the indenter presses straight down.
+        """
     @property
     def torque_n_mm(self) -> _Float:
-        """Torque of the indenter on the gel about the indenter's origin, in the gel's frame, N mm; `[n_frames, 3]`."""
+        """Torque of the indenter on the gel about the indenter's origin, in the gel's frame, N mm;
+        `[n_frames, 3]`.
+        """
     @property
     def readings_kpa(self) -> _Float:
-        """Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`."""
+        """Port pressure of each taxel: the hydrostatic pressure in the gel over the port, kPa;
+        `[n_frames, n_taxels]`.
+        """
     @property
     def points_kpa(self) -> dict[str, _Float]:
         """Hydrostatic pressure at each point of the path's file, by name, kPa; `[n_frames]` each."""
     def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
-        """Draws readings, force and place over time.
+        """Draws readings, force and position over time with Matplotlib.
 
-        With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+        - `axes`: three axes to draw in; new ones unless given.
+
+        Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+        Matplotlib, and `Error` for another number of axes.
         """
     def __len__(self) -> int: ...
 
 @final
 class Pressed:
-    """A simulated press, from first touch to full depth: what `Gel.press` returns. Each frame is deeper than the one before."""
+    """A simulated press, from first touch to full depth: the result of `Gel.press`. Each frame is
+    deeper than the one before.
+    """
     @property
     def provenance(self) -> _Simulated:
-        """What every number here is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     @property
     def depth_mm(self) -> _Float:
         """Depth below first touch, mm; `[n_frames]`. The first frame is the untouched gel."""
@@ -310,181 +377,250 @@ class Pressed:
         """Force of the indenter into the gel, N; `[n_frames]`."""
     @property
     def readings_kpa(self) -> _Float:
-        """Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`. A barometer there would read this if it followed
-        the gel without gain, delay and creep; what a real one makes of it, a trained `Twin` tells.
+        """Port pressure of each taxel: the hydrostatic pressure in the gel over the port, kPa;
+        `[n_frames, n_taxels]`. An ideal barometer without gain, delay and relaxation would read
+        this. A trained `Twin` predicts what a real one reads.
         """
     def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
-        """Draws readings and force over depth.
+        """Draws readings and force over depth with Matplotlib.
 
-        With Matplotlib; its two axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+        - `axes`: two axes to draw in; new ones unless given.
+
+        Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+        Matplotlib, and `Error` for another number of axes.
         """
 
 @final
 class PressureMap:
-    """A continuous map over the gel of what a few taxels read: 96 columns and 64 rows, interpolated between the taxels. A notebook shows its picture.
+    """A pressure map: the readings of a few taxels, interpolated over the gel, on 96 columns and 64
+    rows. A notebook shows its picture.
 
-    - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`. A taxel whose reading is NaN or masked is left out: the map is that of the other
-      taxels, and NaN everywhere if there is none.
-    - `provenance`: where they come from: `"real"`, `"emulated"` or `"simulated"`.
+    - `sensor`: the sensor.
+    - `readings_kpa`: readings above the unloaded baseline, kPa; `[n_taxels]`. A taxel whose reading
+      is NaN or masked is left out: the map is interpolated from the other taxels. It is NaN
+      everywhere if there is none.
+    - `provenance`: provenance of the readings: `"real"`, `"emulated"` or `"simulated"`.
 
-    Raises `Error` for another number of readings than the sensor has taxels, and for one that is infinite.
+    Raises `Error` if the number of readings is not the number of taxels, and for an infinite
+    reading.
     """
     def __new__(cls, sensor: Sensor, readings_kpa: _Floats, provenance: _Provenance) -> PressureMap: ...
     @property
     def provenance(self) -> _Provenance:
-        """Where the readings come from: `"real"`, `"emulated"` or `"simulated"`."""
+        """Provenance of the readings: `"real"`, `"emulated"` or `"simulated"`."""
     @property
     def pressure_kpa(self) -> _Float:
-        """Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first. The grid spans the box that holds the gel (`Sensor.bounds_mm`)."""
+        """Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first. The
+        grid spans the box that contains the gel (`Sensor.bounds_mm`).
+        """
     @property
     def missing(self) -> list[str]:
-        """Names of the taxels without a reading: the map was made without them."""
+        """Names of the taxels without a reading. The map was made without them."""
     def _repr_svg_(self) -> str:
         """The picture that a notebook shows: the text of an SVG file."""
     def save(self, path: _Path) -> None:
-        """Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
+        """Draws the map into a file, and marks the taxels that have a reading.
+
+        - `path`: path of the file, with the ending `.svg` or `.png`.
 
         Raises `Error` for a name with another ending, and for a file that cannot be written.
         """
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the map in the gel's plane, with a scale in kPa.
+        """Draws the map in the gel's plane with Matplotlib, with a scale in kPa.
 
-        With Matplotlib; its axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it.
+        - `axes`: the axes to draw in; new axes unless given.
+
+        Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+        Matplotlib.
         """
 
 @final
 class Reader:
-    """Reads a sensor frame by frame: on an I²C bus of Linux (`Reader.open`), over a serial port (`Reader.serial`), from datagrams (`Reader.udp`), out of a log
-    (`Reader.replay`), or an emulated one (`Reader.emulated`).
+    """Reads a sensor frame by frame: on an I²C bus of Linux (`Reader.open`), over a serial port
+    (`Reader.serial`), from UDP datagrams (`Reader.udp`), from a log (`Reader.replay`), or an
+    emulated sensor (`Reader.emulated`).
 
-    It reads on a thread of its own, from when it is made until `close` or the end of a `with` block. Iterating gives a `Reading` for each frame, as they come; up to 256
-    frames wait for whom is late, more are missed. Other threads run meanwhile, and Ctrl-C ends the wait for a frame.
+    The sensor is read on a thread of its own until `close` or the end of a `with` block. Iteration
+    returns a `Reading` for each frame as it comes. Up to 256 frames wait for a slow caller; more
+    are missed. Other Python threads run during the wait for a frame, and Ctrl-C ends it.
     """
     @staticmethod
     def open(bus: _Path, sensor: Sensor, *, counts_per_pa: _Count | None = None) -> Reader:
-        """Reads the sensor on a bus such as `/dev/i2c-1`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of its barometers,
-        confirmed by who knows the parts; the description's unless given. Takes half a second; Ctrl-C ends the wait.
+        """Reads a sensor on an I²C bus. The call takes half a second; Ctrl-C ends the wait. Nothing
+        may touch the sensor during the call, because the first frames make the tare.
 
-        Raises `Error` for a bus that cannot be opened, and a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
+        - `bus`: path of the bus, such as `/dev/i2c-1`.
+        - `sensor`: the sensor.
+        - `counts_per_pa`: scale of the barometers, counts per Pa, confirmed by a person who knows
+          the parts; that of the description unless given.
+
+        Raises `Error` for a bus that cannot be opened, for a sensor that does not answer or does
+        not read the pressure of free air, and for barometers whose scale nobody has confirmed.
         """
     @staticmethod
     def serial(port: str, line: _Path, sensor: Sensor) -> Reader:
-        """Reads the frames that a microcontroller writes to a serial port such as `/dev/ttyACM0` or `COM3`. `line` is a file (TOML) that says how frames stand on the
-        line. Nothing may touch the sensor meanwhile: the first frames make the tare.
+        """Reads the frames that a microcontroller writes to a serial port. Nothing may touch the
+        sensor during the call, because the first frames make the tare.
 
-        Raises `Error` for a port that cannot be opened, a description that is wrong or of another number of taxels, and a line on which no frame comes for 3 s; the
-        message says what came instead.
+        - `port`: name of the port, such as `/dev/ttyACM0` or `COM3`.
+        - `line`: path of the line description (TOML), which says how to read the frames.
+        - `sensor`: the sensor.
+
+        Raises `Error` for a port that cannot be opened, for a line description that is wrong or of
+        another number of taxels, and for a line on which no frame comes for 3 s. The message says
+        what came instead.
         """
     @staticmethod
     def udp(address: str, line: _Path, sensor: Sensor) -> Reader:
-        """Reads frames that come as datagrams (UDP) to an address of this computer, such as `"0.0.0.0:9000"`. `line` is a file (TOML) that says how frames stand in them.
+        """Reads frames from datagrams (UDP).
+
+        - `address`: an address of this computer, such as `"0.0.0.0:9000"`.
+        - `line`: path of the line description (TOML), which says how to read the frames.
+        - `sensor`: the sensor.
 
         Raises `Error` as `serial` does.
         """
     @staticmethod
     def replay(log: _Path, sensor: Sensor) -> Reader:
-        """Plays the frames of a log (MCAP) at their own pace; they are what the log says: `"real"` or `"emulated"`. After the last one `read` raises `Error`.
+        """Replays the frames of a log (MCAP) at their own pace. Their provenance is that of the log:
+        `"real"` or `"emulated"`. After the last frame `read` raises `Error`.
 
-        Raises `Error` for a log that cannot be read, has no frames, or is of other taxels than the sensor's.
+        - `log`: path of the log.
+        - `sensor`: the sensor.
+
+        Raises `Error` for a log that cannot be read, has no frames, or is of other taxels than
+        those of the sensor.
         """
     @staticmethod
     def emulated(sensor: Sensor) -> Reader:
-        """Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about. Takes half a second; Ctrl-C ends the wait.
+        """Reads an emulated sensor in real time: registers on an emulated bus, while a ball that
+        wanders about presses the gel. The call takes half a second; Ctrl-C ends the wait.
+
+        - `sensor`: the sensor.
 
         Raises `Error` for a sensor whose description does not say how its taxels are wired.
         """
     @property
     def provenance(self) -> Literal["real", "emulated"]:
-        """Where the readings come from: `"real"` or `"emulated"`."""
+        """Provenance of the readings: `"real"` or `"emulated"`."""
     @property
     def taxels(self) -> list[str]:
         """Names of the taxels, in the order of every reading."""
     @property
     def notes(self) -> list[str]:
-        """What was odd when the sensor was switched on, a sentence each."""
+        """Remarks from when the sensor was switched on, one sentence each."""
     def remarks(self) -> list[str]:
-        """What was on the wire so far besides frames, and how often: torn lines, missing frames. Empty if all was well, and of a reader that is closed."""
+        """Remarks about what came on the connection so far besides frames, with counts: incomplete
+        lines, missing frames. Empty if there was nothing else, and for a reader that is closed.
+        """
     def compensate(self, temperature: _Path) -> None:
-        """Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile: the next
-        frames make a new tare.
+        """Compensates the readings for the drift of the zeros with temperature. Nothing may touch the
+        sensor during the call, because the next frames make a new tare.
 
-        Raises `Error` for a file that is wrong, or of another sensor, and for a reader that is closed.
+        - `temperature`: path of a file (TOML) that `twintac characterize` made.
+
+        Raises `Error` for a file that is wrong or of another sensor, and for a reader that is
+        closed.
         """
     def warmer_k(self) -> float | None:
-        """How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures, and of a reader that is closed. Zeros
-        move with it.
+        """Temperature change since the tare of the chip that changed most, K; negative if it is
+        colder; `None` without temperatures, and for a reader that is closed. Zeros drift with
+        temperature.
         """
     def read(self) -> Reading:
-        """The next frame.
+        """Waits for the next frame and returns it.
 
-        Raises `Error` for a sensor that has failed for 2 s on end or was silent for 3 s, and for a reader that is closed.
+        Raises `Error` for a sensor that has failed for 2 s without a break or was silent for 3 s,
+        and for a reader that is closed.
         """
     def close(self) -> None:
-        """Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing."""
+        """Stops reading, within a second even if the bus hangs. A closed reader cannot read again.
+        Closing it again does nothing.
+        """
     def __iter__(self) -> Reader: ...
     def __next__(self) -> Reading: ...
     def __enter__(self) -> Reader:
-        """The reader itself."""
+        """Returns the reader itself."""
     def __exit__(self, *_error: object) -> None:
-        """Ends the reading."""
+        """Closes the reader."""
 
 @final
 class Reading:
-    """A frame of a sensor: what `Reader.read` returns."""
+    """A frame of a sensor: the result of `Reader.read`."""
     @property
     def provenance(self) -> Literal["real", "emulated"]:
-        """Where the readings come from: `"real"` or `"emulated"`."""
+        """Provenance of the readings: `"real"` or `"emulated"`."""
     @property
     def sequence(self) -> int:
-        """Its number, from 0, of all frames that were asked of the sensor: numbers that are missing were missed, or the bus gave none. The first ones made the tare."""
+        """Number of the frame, from 0, among all frames that were requested from the sensor. Missing
+        numbers are frames that were missed or that the bus did not deliver. The first frames made
+        the tare.
+        """
     @property
     def time_s(self) -> float:
-        """When the taxels were triggered, s since the sensor was switched on."""
+        """Time at which the taxels were triggered, s since the sensor was switched on."""
     @property
     def readings_kpa(self) -> _Float:
-        """Readings above what the taxels read untouched, kPa, `[n_taxels]`; NaN of a taxel that gives no usable one."""
+        """Readings above those of the untouched sensor, kPa; `[n_taxels]`. NaN for a taxel without a
+        usable reading.
+        """
     @property
     def is_valid(self) -> _Bool:
-        """Whether each taxel's reading can be used; `[n_taxels]`."""
+        """Whether each taxel's reading is usable; `[n_taxels]`."""
     @property
     def faults(self) -> list[str | None]:
-        """Why a taxel's reading cannot be used, in a word or two, `[n_taxels]`; `None` of a taxel that works."""
+        """Why a taxel's reading is not usable, in a word or two; `[n_taxels]`. `None` for a taxel that
+        works.
+        """
     @property
     def temperatures_c(self) -> _Float:
-        """Temperatures of the barometers, °C, `[n_taxels]`; NaN of one that gives none."""
+        """Temperatures of the barometers, °C; `[n_taxels]`. NaN for one without a temperature."""
 
 @final
 class Recording:
-    """Recorded presses of one sensor: of a real one, of an emulated one, or simulated. `len()` is the number of presses."""
+    """Recorded presses of one sensor: a real or an emulated one, or simulated presses. `len()` is the
+    number of presses.
+    """
     @staticmethod
     def load(path: _Path) -> Recording:
-        """Reads a Parquet file, as runs and `save` write it. Ctrl-C ends the wait.
+        """Reads a Parquet file that a run or `save` wrote. Ctrl-C ends the wait.
 
-        Raises `Error` with the file if it is no recording, is damaged, or cannot be read.
+        Raises `Error` with the file if it is not a recording, is damaged, or cannot be read.
         """
     @staticmethod
     def import_csv(description: _Path, *paths: _Path) -> Recording:
-        """Reads CSV files of any laboratory. The description (TOML, see the folder `imports`) says which column is what, in which unit. Ctrl-C ends the wait.
+        """Reads CSV files of any laboratory. Ctrl-C ends the wait.
 
-        Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
+        - `description`: path of the import description (TOML, see the folder `imports`), which says
+          what each column means, and its unit.
+        - `paths`: paths of the CSV files.
+
+        Raises `Error` with file, line and field: of the import description, or of the cell that
+        cannot be read.
         """
     @staticmethod
     def guess_import(path: _Path) -> str:
-        """A first description of a CSV file's columns, for `import_csv`: the text of a TOML file with a comment on each guess.
+        """Guesses an import description of a CSV file, for `import_csv`.
+
+        - `path`: path of the CSV file.
+
+        Returns the text of a TOML file, with a comment on each guess.
 
         Raises `Error` with the file if it cannot be read or has no rows of numbers.
         """
     @property
     def imported(self) -> list[dict[str, Any]]:
-        """What `import_csv` found in each file and left out of it, a dict for each: `file`, `rows_read`, `rows_dropped`, `rows_incomplete`, `missing_readings`,
-        `clipped_readings`, `outliers`, `presses`, `presses_dropped`, `shared_frames`, `unread_columns`, `warnings`. Empty for recordings from elsewhere.
+        """What `import_csv` found in each file and left out of it: for each file a dict with `file`,
+        `rows_read`, `rows_dropped`, `rows_incomplete`, `missing_readings`, `clipped_readings`,
+        `outliers`, `presses`, `presses_dropped`, `shared_frames`, `unread_columns`, `warnings`.
+        Empty for other recordings.
         """
     @property
     def sensor(self) -> str:
-        """Name of the sensor, as its description has it."""
+        """Name of the sensor in its description."""
     @property
     def provenance(self) -> _Provenance:
-        """Where the numbers come from: `"real"`, `"emulated"` or `"simulated"`."""
+        """Provenance of the numbers: `"real"`, `"emulated"` or `"simulated"`."""
     @property
     def taxels(self) -> list[str]:
         """Names of the taxels, in the order of every row of readings."""
@@ -492,56 +628,96 @@ class Recording:
     def presses(self) -> list[str]:
         """Names of the presses, in the order in which they were made."""
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """A NumPy array for each column of the Parquet file, with a value for each frame:
+        """The columns of the Parquet file as NumPy arrays, by name, with a value for each frame:
 
-        - `press_index`, `press`, `mounting`, `indenter`, `control`, `provenance`: of the press, the same in all its frames;
-        - `time_s`: time, s;
-        - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame, mm, and a quaternion;
-        - `force_n`: force into the gel, N; NaN where it is not known;
-        - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable. A reading that did not come is NaN.
+        - `press_index`, `press`, `mounting`, `indenter`, `control`, `provenance`: properties of the
+          press, the same in all its frames. `mounting` is the installation of the indenter.
+        - `time_s`: time, s.
+        - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame:
+          position, mm, and quaternion.
+        - `force_n`: force into the gel, N; NaN if it is not known.
+        - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: reading of the taxel, kPa; the reading as
+          it was recorded; whether it is usable. A missing reading is NaN.
         """
     def to_pandas(self) -> pandas.DataFrame:
         """The columns as a `pandas.DataFrame`."""
     def to_polars(self) -> polars.DataFrame:
-        """The columns as a `polars.DataFrame`, through Arrow: what `polars.DataFrame(recording)` does."""
+        """The columns as a `polars.DataFrame`, through Arrow. `polars.DataFrame(recording)` does the
+        same.
+        """
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
-        """The columns for whatever reads Arrow by its PyCapsule interface: `polars.DataFrame(recording)`, `pyarrow.table(recording)`, `pandas.DataFrame.from_arrow(recording)`, or DuckDB.
-        Types are those of `columns`, texts are strings, and a force that is not known and a reading that did not come are null. No other schema is given, whatever `requested_schema` is.
+        """The columns for any library that reads Arrow through its PyCapsule interface:
+        `polars.DataFrame(recording)`, `pyarrow.table(recording)`,
+        `pandas.DataFrame.from_arrow(recording)`, or DuckDB. Types are those of `columns`. Texts are
+        strings. An unknown force and a missing reading are null. The schema is always this one;
+        `requested_schema` is ignored.
         """
     def save(self, path: _Path) -> None:
-        """Writes a Parquet file, whole or not at all.
+        """Writes a Parquet file. The file appears whole or not at all.
 
         Raises `Error` with the file if it cannot be written.
         """
     def save_lerobot(self, folder: _Path, *, how_made: str = "") -> dict[str, int]:
-        """Writes a LeRobot data set, version 3.0, into a folder that is not there yet: presses are episodes, indenters are tasks. `how_made` is put into its data card.
-        Returns the numbers of episodes, frames and tasks, frames a second (`fps`), and the rate that they were resampled from, Hz (`resampled_from_hz`; `None` if they came evenly).
+        """Writes a LeRobot data set, version 3.0: presses are episodes, indenters are tasks.
 
-        Raises `Error` for a folder that is there, or cannot be written.
+        - `folder`: path of a folder that does not exist yet.
+        - `how_made`: text for the data card that says how the data were made.
+
+        Returns the numbers of episodes, frames and tasks (`episodes`, `frames`, `tasks`), the
+        frames per second (`fps`), and the rate from which frames were resampled, Hz
+        (`resampled_from_hz`; `None` if they were evenly spaced).
+
+        Raises `Error` for a folder that exists or cannot be written.
         """
     def characterize(self, sensor: Sensor, folder: _Path | None = None) -> dict[str, Any]:
-        """What the sensor does, as far as the presses tell: sensitivity, noise, hysteresis and more, as `twintac characterize --json` says it.
-        With a folder, the report and the data sheet are written into it. Figures that the presses do not show have the reason in their place. Ctrl-C ends the wait.
+        """Characterizes the sensor from the presses: sensitivity, noise, hysteresis and other figures.
+        Ctrl-C ends the wait.
+
+        - `sensor`: the sensor.
+        - `folder`: folder for the report and the data sheet; without it, they are not written.
+
+        Returns the figures as `twintac characterize --json` prints them. A figure that the presses
+        do not show is replaced by the reason.
 
         Raises `Error` for a sensor whose taxels are not those of the recording.
         """
     def plot(self, press: _Count = 0, axes: Sequence[Axes] | None = None) -> list[Axes]:
-        """Draws one press, counted from 0, over time: readings that are usable, force and height of the indenter.
+        """Draws one press over time with Matplotlib: usable readings, force and height of the
+        indenter.
 
-        With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for a press that is not there or another number of axes.
+        - `press`: index of the press, from 0.
+        - `axes`: three axes to draw in; new ones unless given.
+
+        Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+        Matplotlib, and `Error` for a press that does not exist or another number of axes.
         """
     def __len__(self) -> int: ...
 
 @final
 class Dataset:
-    """Many simulated presses, made in shards by as many processes and machines as there are. A press depends on the seed and on its own name alone: however the data set
-    is divided, its shards merge to the same bytes.
+    """Many simulated presses, made in shards by any number of processes and machines. A press depends
+    only on the seed and on its own name. The merged file therefore has the same bytes for every
+    division into shards.
 
-    Presses are those of a protocol (TOML), or `n_presses` at random with the `indenters` named (all, if none is), 1000 unless it is said. The gel is solved, or a fast one:
-    PhysTac's (`fast=True`) or that of a file. Readings are the pressures at the ports, or those of the twin in a folder. `imperfection` (TOML, with `fast`) gives each press an
-    imperfect sensor of its own. `settings` (TOML) may have a table `[simulate]`. Without a `sensor` (TOML), that of the twin is taken, or PhysTac.
+    - `sensor`: path of the sensor description (TOML); unless given, the sensor of the twin, or
+      PhysTac without a twin.
+    - `protocol`: path of the press protocol (TOML); random presses unless given.
+    - `indenters`: names of the indenters of random presses; all indenters of the sensor unless
+      given. A protocol names its own.
+    - `n_presses`: number of presses; unless given, 1000 random presses, rounded up to the same
+      number for each indenter, or all presses of the protocol.
+    - `seed`: seed of all random choices.
+    - `fast`: the surrogate of the gel: `True` for the built-in one of PhysTac or of its fingertip,
+      or the path of a file. Without it, the gel is computed with finite elements.
+    - `twin`: folder of the twin that computes the readings; unless given, readings are the
+      pressures at the ports.
+    - `imperfection`: path of the sensor variation (TOML), from which each press gets an imperfect
+      sensor of its own. It needs `fast`.
+    - `settings`: path of a file (TOML) that may have a table `[simulate]` with settings of the
+      simulation; not together with `twin`.
 
-    Raises `Error` with file, line and field if a file is wrong, and for arguments that do not go together.
+    Raises `Error` with file, line and field if a file is wrong, and for arguments that do not go
+    together.
     """
     def __new__(
         cls,
@@ -558,170 +734,254 @@ class Dataset:
     ) -> Dataset: ...
     @property
     def n_presses(self) -> int:
-        """How many presses it has."""
+        """Number of presses."""
     @property
     def identity(self) -> str:
-        """What it is made from: the text of `dataset.toml`. Data sets of the same text are the same."""
+        """The text of `dataset.toml`: the inputs of the data set. Data sets with the same text are the
+        same.
+        """
     def make(self, folder: _Path, shard: _Count = 1, of: _Count = 1, *, progress: Progress = None) -> dict[str, Any]:
-        """Makes shard `shard` of `of`, counted from 1, in a folder, unless it is complete there. It appears whole or not at all. Returns its manifest, and the paths `parquet` and
-        `manifest_file`. Ctrl-C ends it before its next press.
+        """Makes one shard in a folder, unless it is complete there. The shard appears whole or not at
+        all. Ctrl-C ends the call before the next press.
 
-        Raises `Error` for a folder that holds another data set or another division, and for a shard that is not from 1 to `of`.
+        - `folder`: path of the folder.
+        - `shard`: number of the shard, from 1 to `of`.
+        - `of`: number of shards.
+        - `progress`: display of the progress, see `Progress`.
+
+        Returns the manifest of the shard, with the paths `parquet` and `manifest_file`.
+
+        Raises `Error` for a folder that holds another data set or another division into shards, and
+        for a shard that is not from 1 to `of`.
         """
     @staticmethod
     def check(folder: _Path, *, progress: Progress = None) -> dict[str, Any]:
-        """Checks that all shards of a folder are there and as they were made. Returns counts of shards, presses and frames, and the presses that were left out.
+        """Checks that all shards in a folder are complete and unchanged.
+
+        - `folder`: path of the folder.
+        - `progress`: display of the progress, see `Progress`.
+
+        Returns the numbers of shards, presses and frames, and the presses that were left out.
 
         Raises `Error` that names the shard that is missing or differs.
         """
     @staticmethod
     def merge(folder: _Path, file: _Path | None = None, *, progress: Progress = None) -> dict[str, Any]:
-        """Does what `check` does, and writes all presses as one recording: `presses.parquet` in the folder, or another file. Returns what `check` returns.
+        """Checks all shards as `check` does, and writes all presses as one recording.
+
+        - `folder`: path of the folder.
+        - `file`: path of the recording; `presses.parquet` in the folder unless given.
+        - `progress`: display of the progress, see `Progress`.
+
+        Returns what `check` returns.
 
         Raises `Error` as `check` does, and for a file that cannot be written.
         """
 
 @final
 class Twin:
-    """A trained twin: what the barometers of one sensor would read while its gel is pressed.
+    """A trained twin: it predicts the readings of one sensor's barometers while its gel is pressed.
 
-    `predict` reads a whole press, `at` one place frame by frame, `states` many sensors together, from pressures at their ports.
+    `predict` computes a whole press, `predict_along` a path, `at` one location frame by frame, and
+    `states` many sensors together from the pressures at their ports.
     """
     @staticmethod
     def load(folder: _Path) -> Twin:
-        """Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`). A pickle keeps where the folder is, and finds the same twin there or raises `Error`.
+        """Loads a twin. A pickle contains the path of the folder. Unpickling loads the same twin from
+        there, or raises `Error`.
+
+        - `folder`: the folder of a run's twin: `<run>/model` (`Run.model_folder`).
 
         Raises `Error` for a folder that holds no twin, or a damaged one.
         """
     @property
     def sensor(self) -> Sensor:
-        """The sensor whose twin it is."""
+        """The sensor of the twin."""
     @property
     def trained_on(self) -> _Provenance:
-        """Where the recordings come from that it was trained with: `"real"`, `"emulated"` or `"simulated"`. What it predicts is simulated."""
+        """Provenance of the recordings on which the twin was trained: `"real"`, `"emulated"` or
+        `"simulated"`. Its predictions are `"simulated"`.
+        """
     def predict(self, press: Press) -> Prediction:
-        """What the barometers would read along a press, as many frames a second as the sensor gives. Bench and gel are as they were found at training. Takes a few
-        seconds; Ctrl-C ends the wait.
+        """Predicts the readings along a press, at the frame rate of the sensor. Test setup and gel are
+        as they were fitted in the training. The call takes a few seconds; Ctrl-C ends the wait.
 
-        Raises `Error` for an indenter that the sensor does not have, and for a place that cannot be pressed.
+        - `press`: the press.
+
+        Raises `Error` for an indenter that the sensor does not have, and for a location that cannot
+        be pressed.
         """
     def predict_along(self, path: PressPath, *, progress: Progress = None) -> Prediction:
-        """What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included; each frame takes from some milliseconds to seconds. Points of
-        the path are not read. Ctrl-C ends it before its next frame. `Prediction.failure` says why a path ends before it should.
+        """Predicts the readings along a path. The gel is computed by finite elements, frame by frame,
+        with sliding and tilting; a frame takes from some milliseconds to seconds. Ctrl-C ends the
+        call before the next frame. If the path cannot be followed to its end, `Prediction.failure`
+        says why.
 
-        Raises `Error` for an indenter that the sensor does not have, and for a path that misses the gel.
+        - `path`: the path. Its points are not read.
+        - `progress`: display of the progress, see `Progress`.
+
+        Raises `Error` for an indenter that the sensor does not have, and for a path that misses the
+        gel.
         """
     def at(self, press: Press) -> TwinAtPlace:
-        """The twin at the place of a press and down to its depth, to be stepped with depths as they come. Takes a second; Ctrl-C ends the wait. A step then takes a
-        microsecond.
+        """The twin at the location of a press and down to its depth, to be stepped with depths as they
+        come. The call takes a second; Ctrl-C ends the wait. A step then takes a microsecond.
+
+        - `press`: the press.
 
         Raises `Error` as `predict` does.
         """
     def states(self, n_sensors: _Count = 1) -> TwinState:
-        """Twins of so many sensors, to be stepped together with pressures at their ports: for programs that solve the gel themselves.
+        """Twins of many sensors, to be stepped together with the pressures at their ports: for
+        programs that compute the gel themselves.
 
-        Raises `Error` for no sensor, and for more than make ten million readings.
+        - `n_sensors`: number of sensors, from 1 to as many as give ten million readings.
+
+        Raises `Error` for a number out of this range.
         """
 
 @final
 class Prediction:
-    """What a twin would read along a press or a path: what `Twin.predict` and `Twin.predict_along` return. Every array has a row for each frame."""
+    """Predicted readings along a press or a path: the result of `Twin.predict` and
+    `Twin.predict_along`. Every array has a row for each frame.
+    """
     @property
     def provenance(self) -> _Simulated:
-        """What every number here is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     @property
     def failure(self) -> str | None:
-        """Why the frames end before the path does; `None` if they do not, and of a press."""
+        """Why the frames end before the path does; `None` if they reach its end, and for a press."""
     @property
     def place_mm(self) -> _Float:
-        """Place of the indenter's origin in the gel's plane, x and y, mm; `[n_frames, 2]`."""
+        """Location of the indenter's origin in the gel's plane, x and y, mm; `[n_frames, 2]`."""
     @property
     def time_s(self) -> _Float:
-        """Time since the start of the press, or that of the path, s; `[n_frames]`."""
+        """Time since the start of the press or the path, s; `[n_frames]`."""
     @property
     def depth_mm(self) -> _Float:
-        """Depth below first touch, mm, with the height at which the bench of the recordings touched; negative above the gel; `[n_frames]`."""
+        """Depth below first touch, which is at the contact height of the recordings' test setup, mm;
+        negative above the gel; `[n_frames]`.
+        """
     @property
     def force_n(self) -> _Float:
         """Force of the indenter into the gel, N; `[n_frames]`."""
     @property
     def readings_kpa(self) -> _Float:
-        """What the barometers would read above what they read untouched, kPa; `[n_frames, n_taxels]`."""
+        """Predicted readings of the barometers above those of the untouched sensor, kPa;
+        `[n_frames, n_taxels]`.
+        """
     @property
     def simulated(self) -> _Bool:
-        """Whether the frame was simulated; `[n_frames]`. It was not where it is deeper than the gel could be pressed: the last pressures stand there."""
+        """Whether the frame was simulated; `[n_frames]`. A frame that is deeper than the gel could be
+        pressed in the simulation was not: it has the last simulated pressures.
+        """
     @property
     def half_width_kpa(self) -> _Float | None:
-        """Half the width of the 90 % interval around each reading, kPa, `[n_frames, n_taxels]`; `None` of a twin that does not know."""
+        """Half width of the 90 % interval around each reading, kPa; `[n_frames, n_taxels]`. `None` for
+        a twin without intervals.
+        """
     @property
     def unlikeness(self) -> _Float | None:
-        """How unlike the contact is to what taught the twin, without unit, `[n_frames]`; `None` of a twin that does not know."""
+        """Out-of-distribution (OOD) score of the contact: its distance from the training set, without
+        unit; `[n_frames]`. `None` for a twin without intervals.
+        """
     @property
     def is_unlike(self) -> _Bool | None:
-        """Whether the contact is too unlike for readings and intervals to be trusted, `[n_frames]`; `None` of a twin that does not know."""
+        """Whether the contact is so far out of distribution that readings and intervals cannot be
+        trusted; `[n_frames]`. `None` for a twin without intervals.
+        """
     def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
-        """Draws readings with their 90 % intervals, force and depth over time; grey is where they are not to be trusted: not simulated, or unlike.
+        """Draws readings with their 90 % intervals, force and depth over time with Matplotlib. The
+        background is grey where the prediction cannot be trusted: where it was not simulated, or is
+        out of distribution.
 
-        With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+        - `axes`: three axes to draw in; new ones unless given.
+
+        Returns the axes, so that they can be restyled. Raises `ModuleNotFoundError` without
+        Matplotlib, and `Error` for another number of axes.
         """
     def __len__(self) -> int: ...
 
 @final
 class TwinAtPlace:
-    """A twin whose sensor is pressed at one place, stepped with depths: what `Twin.at` returns."""
+    """A twin whose sensor is pressed at one location, stepped with depths. `Twin.at` returns it."""
     @property
     def provenance(self) -> _Simulated:
-        """What every reading is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     def step(self, since_previous_s: float, depth_mm: float) -> _Float:
-        """One more frame, `since_previous_s` after the last, at a depth below first touch, mm, negative above the gel. Returns what the barometers would read above
-        their zero, kPa; `[n_taxels]`.
+        """Computes one more frame.
 
-        Raises `Error` for a time below 0 or a depth that is not finite.
+        - `since_previous_s`: time since the last frame, s.
+        - `depth_mm`: depth below first touch, mm; negative above the gel.
+
+        Returns the predicted readings of the barometers above their zero, kPa; `[n_taxels]`.
+
+        Raises `Error` for a time below 0, and for a depth that is not finite.
         """
     @property
     def force_n(self) -> float:
         """Force of the indenter into the gel at the last frame, N."""
     @property
     def half_width_kpa(self) -> _Float | None:
-        """Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know."""
+        """Half widths of the 90 % intervals around the last readings, kPa; `[n_taxels]`. `None` for a
+        twin without intervals.
+        """
     @property
     def unlikeness(self) -> tuple[float, bool] | None:
-        """How unlike the last contact is to what taught the twin, without unit, and whether it is too unlike for readings and intervals to be trusted; `None` of a
-        twin that does not know.
+        """Out-of-distribution (OOD) score of the last contact, without unit, and whether the contact
+        is so far out of distribution that readings and intervals cannot be trusted. `None` for a
+        twin without intervals.
         """
     @property
     def max_depth_mm(self) -> float:
-        """Depth below first touch at which the table ends, mm; deeper, its last pressures stand."""
+        """Depth below first touch at which the table over depth ends, mm. At larger depths, its last
+        pressures are used.
+        """
     def tare(self) -> None:
-        """Takes what is read now as zero, as a tare of a real sensor does."""
+        """Sets the present readings to zero, as a tare of a real sensor does."""
     def rest(self) -> None:
-        """Lets the gel rest until the next frame: it forgets the presses before. The zero stays."""
+        """Resets the gel to rest until the next frame: readings no longer depend on earlier presses.
+        The zero stays.
+        """
 
 @final
 class TwinState:
-    """Twins of many sensors, stepped together with pressures at their ports: what `Twin.states` returns. `len()` is the number of sensors."""
+    """Twins of many sensors, stepped together with the pressures at their ports. `Twin.states` returns
+    them. `len()` is the number of sensors.
+    """
     @property
     def provenance(self) -> _Simulated:
-        """What every reading is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     def step(self, since_previous_s: float, pressure_kpa: _Floats) -> _Float:
-        """One more frame of every sensor, `since_previous_s` after the last: from pressures at the ports to what the barometers would read, kPa; both
-        `[n_sensors, n_taxels]`.
+        """Computes one more frame of every sensor.
 
-        Raises `Error` for a time below 0, and for pressures of another shape or that are not finite.
+        - `since_previous_s`: time since the last frame, s.
+        - `pressure_kpa`: pressures at the ports, kPa; `[n_sensors, n_taxels]`.
+
+        Returns the predicted readings of the barometers, kPa; `[n_sensors, n_taxels]`.
+
+        Raises `Error` for a time below 0, and for pressures of another shape or that are not
+        finite.
         """
     def tare(self) -> None:
-        """Takes what is read now as zero, as a tare of a real sensor does."""
+        """Sets the present readings to zero, as a tare of a real sensor does."""
     def tare_untouched(self) -> None:
-        """Takes what a sensor that nothing touches reads as zero."""
+        """Sets the readings of an untouched sensor to zero."""
     def rest(self, sensor: _Count) -> None:
-        """Lets the gel of one sensor, counted from 0, rest until its next frame: it forgets the presses before. Its zero stays."""
+        """Resets the gel of one sensor to rest until its next frame: readings no longer depend on
+        earlier presses. The zero stays.
+
+        - `sensor`: index of the sensor, from 0.
+        """
     def __len__(self) -> int: ...
 
 @final
 class Run:
-    """A folder in which recordings become a judged twin and a report. What is done is kept: the same again does only what is missing.
+    """A folder in which recordings become an evaluated twin and a report. Finished stages are kept: a
+    call with the same inputs does only what is missing.
 
-    `start`, `import_csv` and `finish` make one, `demo` makes one without data, `open` opens one that is there.
+    `start`, `import_csv` and `finish` make a run, `demo` makes one without data, and `open` opens
+    an existing one.
     """
     @staticmethod
     def start(
@@ -732,53 +992,80 @@ class Run:
         seed: _Count = 1,
         settings: dict[str, Any] | None = None,
     ) -> Run:
-        """Starts a run, or takes up the one that the folder holds with new settings. `source` says in words where the presses come from. `settings`
-        has those that differ from the usual ones, with a dictionary for each stage: `{"train": {"epochs": 40}}`. The same recordings, settings and `seed` give the
-        same twin.
+        """Starts a run, or continues the one in the folder with new settings. The same recordings,
+        settings and `seed` give the same twin.
 
-        Raises `Error`, whose `field` is the setting that cannot be, and for a folder that cannot be written.
+        - `folder`: path of the folder.
+        - `sensor`: the sensor.
+        - `source`: a text that says where the presses come from.
+        - `seed`: seed of all random choices.
+        - `settings`: settings that differ from the default ones, with a dictionary for each stage:
+          `{"train": {"epochs": 40}}`.
+
+        Raises `Error` for a setting that is not allowed (its `field` names the setting), and for a
+        folder that cannot be written.
         """
     @staticmethod
     def open(folder: _Path) -> Run:
-        """Opens a run that was started.
+        """Opens an existing run.
 
-        Raises `Error` for a folder that is no run.
+        Raises `Error` for a folder that is not a run.
         """
     @staticmethod
     def demo(folder: _Path, *, seed: _Count = 1, progress: Progress = None) -> Run:
-        """Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute. Ctrl-C stops it."""
-    def import_csv(self, description: _Path, *paths: _Path) -> None:
-        """Makes the run's recordings of CSV files of any laboratory, which the description (TOML) says how to read, as `Recording.import_csv` does.
+        """Starts a demo run, and makes its recordings: PhysTac, pressed on the emulated bench.
+        `finish` does the rest. Both together take a minute. Ctrl-C stops the call.
 
-        Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
+        - `folder`: path of the folder.
+        - `seed`: seed of all random choices.
+        - `progress`: display of the progress, see `Progress`.
+        """
+    def import_csv(self, description: _Path, *paths: _Path) -> None:
+        """Makes the recordings of the run from CSV files of any laboratory, as `Recording.import_csv`
+        does.
+
+        - `description`: path of the import description (TOML), which says how to read the files.
+        - `paths`: paths of the CSV files.
+
+        Raises `Error` with file, line and field: of the import description, or of the cell that
+        cannot be read.
         """
     def finish(self, *, progress: Progress = None) -> dict[str, Any]:
-        """Runs all stages after the recordings: simulates, aligns, trains, judges, reports. Returns how well the twin does, as `metrics.json` has it.
-        Ctrl-C stops before the next step; the same call goes on from there.
+        """Runs all stages after the recordings: simulation, alignment, training, evaluation, report.
+        Ctrl-C stops the call before the next step; the same call continues from there.
 
-        Raises `Error` for a run that has no recordings, and for presses that no twin can be trained with.
+        - `progress`: display of the progress, see `Progress`.
+
+        Returns the figures of the evaluation, as in `metrics.json`.
+
+        Raises `Error` for a run without recordings, and for presses on which no twin can be
+        trained.
         """
     def recording(self) -> Recording:
-        """The presses, as recorded.
+        """The recorded presses.
 
-        Raises `Error` for a run that has none yet.
+        Raises `Error` for a run without recordings.
         """
     @property
     def folder(self) -> Path:
         """The run's folder."""
     @property
     def model_folder(self) -> Path:
-        """The folder of the twin of all presses, which `Twin.load` reads."""
+        """The folder of the twin that was trained on all presses. `Twin.load` reads it."""
     @property
     def report_path(self) -> Path:
-        """The page that says how well the twin does: `report.html` in the folder. It is there after `finish`."""
+        """Path of the report on the evaluation of the twin: `report.html` in the folder. It exists
+        after `finish`.
+        """
 
 @final
 class Pose:
-    """A rigid transform from an inner frame to an outer one, such as from an indenter's frame to the gel's.
+    """A pose: the rigid transform from an inner frame of reference to an outer one, such as from an
+    indenter's frame to the gel's.
 
     - `position_mm`: origin of the inner frame in the outer one, mm.
-    - `quaternion`: rotation from the inner to the outer frame, `(x, y, z, w)`, of length 1; none unless given.
+    - `quaternion`: rotation from the inner to the outer frame, `(x, y, z, w)`, of length 1; no
+      rotation unless given.
 
     Raises `Error` for numbers that are not finite, and for a quaternion of another length.
     """
@@ -798,23 +1085,28 @@ class Pose:
 
 @final
 class Shape:
-    """A rigid shape that presses. `edge_radius_mm` rounds every convex edge without moving any face. Prismatic shapes have their profile in the xy
-    plane and stand on z = 0.
+    """A rigid shape that presses the gel. `edge_radius_mm` rounds every convex edge and moves no face.
+    Prismatic shapes have their profile in the xy plane and stand on z = 0. All lengths are in mm.
 
-    Each function that makes one raises `Error`, whose `field` is the length that cannot be.
+    Each function that makes a shape raises `Error` for a length that is not allowed; its `field`
+    names the length.
     """
     @staticmethod
     def sphere(radius_mm: float) -> Shape:
-        """A ball that stands on its origin: its middle is `radius_mm` above it."""
+        """A ball that stands on its origin: its centre is `radius_mm` above the origin."""
     @staticmethod
     def cylinder(radius_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
-        """A flat-ended upright cylinder, whose rims are rounded with `edge_radius_mm`."""
+        """A flat-ended upright cylinder. Its rims are rounded with `edge_radius_mm`."""
     @staticmethod
     def box(size_mm: _Floats, edge_radius_mm: float) -> Shape:
-        """A box of this full size along x, y and z, mm, whose edges are rounded with `edge_radius_mm`."""
+        """A box with the full size `size_mm` along x, y and z, mm. Its edges are rounded with
+        `edge_radius_mm`.
+        """
     @staticmethod
     def x(length_mm: float, width_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
-        """Two crossed bars in the shape of an X, a plus turned by 45°: each bar is `length_mm` long and `width_mm` wide."""
+        """Two crossed bars in the shape of an X (a plus, rotated by 45°). Each bar is `length_mm` long
+        and `width_mm` wide.
+        """
     @staticmethod
     def ring(
         outer_radius_mm: float, inner_radius_mm: float, height_mm: float, edge_radius_mm: float
@@ -822,196 +1114,278 @@ class Shape:
         """An upright tube."""
     @staticmethod
     def triangle(side_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
-        """An upright equilateral prism, centroid at the origin, one corner towards +x."""
+        """An upright equilateral prism, with its centroid at the origin and one corner towards +x."""
     @staticmethod
     def wedge(angle_rad: float, length_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
         """A roof-shaped wedge that touches with its ridge, which lies along y."""
     @staticmethod
     def stl(path: _Path, *, unit: str | None = None, scale: float | None = None) -> Shape:
-        """A closed triangle surface in an STL file, whose `unit` is "mm", "cm", "m" or "inch", or in which a length of 1 is `scale` mm; its lowest point is
-        moved to the origin's z.
+        """A closed triangle surface from an STL file. Its lowest point is moved to the height of the
+        origin.
 
-        Raises `Error` with the file if it cannot be read, its surface is not closed, or its size cannot be in that unit.
+        - `path`: path of the file.
+        - `unit`: unit of lengths in the file: `"mm"`, `"cm"`, `"m"` or `"inch"`; mm unless given.
+        - `scale`: the length in mm of 1 in the file, instead of a `unit`.
+
+        Raises `Error` with the file if it cannot be read, if its surface is not closed, or if its
+        size is impossible in that unit.
         """
     @staticmethod
     def surface(vertices_mm: _Floats, triangles: _Integers) -> Shape:
-        """A closed surface of triangles: places of its corners, mm, `[n_vertices, 3]`, and the corners of each triangle, counter-clockwise seen from outside,
-        `[n_triangles, 3]`. It stays where it is.
+        """A closed surface of triangles, which keeps its position.
 
-        Raises `Error` for arrays of another shape, a corner that is not there, and a surface that is not closed.
+        - `vertices_mm`: positions of the vertices, mm; `[n_vertices, 3]`.
+        - `triangles`: indices of the three vertices of each triangle, counter-clockwise seen from
+          outside; `[n_triangles, 3]`.
+
+        Raises `Error` for arrays of another shape, for an index without a vertex, and for a surface
+        that is not closed.
         """
     @staticmethod
     def union(parts: Sequence[tuple[Shape, Pose]]) -> Shape:
-        """Several shapes held together, each where its pose in the whole says; they may overlap."""
+        """Several shapes, joined rigidly. They may overlap.
+
+        - `parts`: each shape with its pose in the frame of the whole.
+        """
     @property
     def bounds_mm(self) -> _Float:
-        """Corners of the smallest box along the shape's axes that holds it, mm: `[2, 3]`."""
+        """Lowest and highest corner of the smallest box along the shape's axes that contains the
+        shape, mm; `[2, 3]`.
+        """
     def signed_distance_mm(self, points_mm: _Floats) -> _Float:
-        """How far points of the shape's own frame are from its surface, mm, less than 0 inside: of `[n_points, 3]`, mm, `[n_points]`. Ctrl-C ends the wait.
+        """Signed distances of points to the surface, negative inside. Ctrl-C ends the wait.
 
-        Raises `Error` for an array of another shape, and a point that is not finite.
+        - `points_mm`: points in the shape's own frame, mm; `[n_points, 3]`.
+
+        Returns the distances, mm; `[n_points]`.
+
+        Raises `Error` for an array of another shape, and for a point that is not finite.
         """
 
 @final
 class Body:
-    """A shape whose distances are known at once: what the fast gel reads.
+    """A shape in the form in which the surrogate of the gel can press it: its signed distances are
+    sampled once.
 
-    Sampling a shape takes from a millisecond to a second, for a surface of many triangles.
+    - `shape`: the shape. Sampling takes from a millisecond to a second, for a surface of many
+      triangles.
     """
     def __new__(cls, shape: Shape) -> Body: ...
 
 @final
 class FastGel:
-    """A sensor's gel without finite elements: microseconds a reading, of bodies of any shape.
+    """The surrogate of a sensor's gel: neural networks instead of finite elements. A reading takes
+    microseconds. The gel may be touched by bodies of any shape.
 
-    `FastGel.phystac()` and `FastGel.phystac_tip()` are built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
+    `FastGel.phystac()` and `FastGel.phystac_tip()` are built in. `twintac fast train` makes the
+    surrogate of another sensor, and `FastGel.load` reads it. A surrogate has no viscoelastic
+    relaxation. It has no friction either, which `Friction` adds.
     """
     @staticmethod
     def phystac() -> FastGel:
-        """The fast gel of PhysTac, which is built in."""
+        """The surrogate of PhysTac's gel, which is built in."""
     @staticmethod
     def phystac_tip() -> FastGel:
-        """The fast gel of PhysTac's fingertip, which is built in."""
+        """The surrogate of the gel of PhysTac's fingertip, which is built in."""
     @staticmethod
     def load(path: _Path) -> FastGel:
-        """Reads a file that `twintac fast train` has made.
+        """Reads a surrogate from a file that `twintac fast train` has made.
 
-        Raises `Error` with the file if it is none, or cannot be read.
+        Raises `Error` with the file if it is not a surrogate, or cannot be read.
         """
     def to_bytes(self) -> bytes:
-        """The gel as the bytes of a file that `load` reads: `Path("gel.safetensors").write_bytes(gel.to_bytes())`."""
+        """The surrogate as the bytes of a file that `load` reads:
+        `Path("gel.safetensors").write_bytes(gel.to_bytes())`.
+        """
     @property
     def sensor(self) -> str:
-        """Name of the sensor whose gel it is."""
+        """Name of the sensor that the surrogate was trained for."""
     def check(self, sensor: Sensor) -> None:
-        """Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
-        Names do not count, nor do indenters, limits and the read-out.
+        """Checks that this is the surrogate of a sensor's gel: shape, material, shell and ports must
+        be the same. Names, indenters, limits, the read-out, relaxation and friction may differ.
 
-        Raises `Error`, which says all that differs.
+        Raises `Error` for another gel. The message says all that differs.
         """
     @property
     def ports_mm(self) -> _Float:
-        """Where the ports are in the gel's plane, mm; `[n_taxels, 2]`."""
+        """Locations of the ports in the gel's plane, mm; `[n_taxels, 2]`."""
     def with_ports(self, places_mm: _Floats) -> FastGel:
-        """The same gel with its ports at other places of the floor, x and y, mm, `[n_ports, 2]`: finer than taxels are.
+        """The same surrogate with its ports at other locations, for example closer together than the
+        taxels.
 
-        Raises `Error` for an array of another shape, no place, more than a million, and a place that is not on the gel's floor.
+        - `places_mm`: locations on the base of the gel, x and y, mm; `[n_ports, 2]`.
+
+        Raises `Error` for an array of another shape, for no location or more than a million, and
+        for a location that is not on the base of the gel.
         """
     def reader(self) -> FastReader:
-        """Prepares one sensor to be read. Each thread needs a reader of its own."""
+        """Returns a reader for one sensor. Each thread needs its own reader."""
     def batch(self, bodies: Sequence[Body], n_threads: _Count | None = None) -> FastBatch:
-        """Prepares many sensors to be read in one call, which these bodies touch. It uses all cores, or `n_threads`.
+        """Returns a reader for many sensors in one call.
 
-        Raises `Error` if there is no body, and for a number of threads that is not from 1 to 1024.
+        - `bodies`: the bodies that may touch the sensors, at least one.
+        - `n_threads`: number of threads, 1 to 1024; as many as there are cores unless given.
+
+        Raises `Error` if there is no body, and for a number of threads out of this range.
         """
 
 @final
 class FastReader:
-    """A fast gel of one sensor, ready to be read: what `FastGel.reader` returns."""
+    """Evaluates the surrogate for one sensor. `FastGel.reader` returns it."""
     @property
     def provenance(self) -> _Simulated:
-        """What every reading is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     def read(self, bodies: Sequence[tuple[Body, Pose]]) -> tuple[_Single, _Single]:
-        """What the gel does under bodies at these poses in its frame (`gel_from_body`). Returns the pressure at each port, kPa, `[n_taxels]`; and force on the gel, N,
-        and torque about the top of its middle, N mm, `[6]`.
+        """Computes the pressures at the ports, and force and torque on the gel, under bodies.
+
+        - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
+
+        Returns the pressure at each port, kPa, `[n_taxels]`, and the wrench, `[6]`: force on the
+        gel, N, and torque about the centre of the gel's top, N mm.
         """
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
-        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
-        above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
-        pressed, or too few pressed there.
+        """The out-of-distribution (OOD) score of a contact, without unit. It is 0 if nothing is near
+        the gel. Above 1, readings and force may be wrong: the shape is unlike those of the training
+        set, the contact is deeper than the training presses, or too few training presses were
+        there.
+
+        - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
         """
 
 @final
 class Friction:
-    """Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips. Nothing is held yet.
+    """Friction of one body on one sensor's gel, frame by frame: the body shears the top of the gel
+    until it slips. At first, there is no contact.
 
-    `coefficient` is Coulomb's, 0 or more; anything else raises `Error`.
+    - `sensor`: the sensor.
+    - `coefficient`: Coulomb's coefficient, 0 or more.
+
+    Raises `Error` for a coefficient that is negative or not finite.
     """
     def __new__(cls, sensor: Sensor, coefficient: float) -> Friction: ...
     def read(self, reader: FastReader, body: Body, gel_from_body: Pose) -> tuple[_Single, _Single]:
-        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+        """Computes one more frame of a sensor that this body alone touches.
+
+        - `reader`: the reader of the sensor's surrogate.
+        - `body`: the body.
+        - `gel_from_body`: pose of the body in the gel's frame.
+
+        Returns what `FastReader.read` returns, with friction.
 
         Raises `Error` for the reader of another gel.
         """
     def release(self) -> None:
-        """Lets go of what touches: the next moment begins without friction."""
+        """Ends the contact: the next frame begins without friction."""
 
 @final
 class FastBatch:
-    """Fast gels of many sensors of one kind, read in one call: what `FastGel.batch` returns."""
+    """Evaluates the surrogate for many sensors of one kind in one call. `FastGel.batch` returns it."""
     @property
     def provenance(self) -> _Simulated:
-        """What every reading is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     def read(
         self, gel_from_body: _Floats, body: _Integers | None = None, ends: _Integers | None = None
     ) -> tuple[_Single, _Single]:
-        """What the gels do under what touches each of them. A sensor's numbers do not depend on the others.
+        """Computes the pressures at the ports, and force and torque on each gel, under the bodies that
+        touch it. The numbers of a sensor do not depend on the other sensors.
 
-        `gel_from_body` has a row for each touch, the first sensor's first: place in mm and quaternion (x, y, z, w), or the place alone. `body` has
-        the numbers of the bodies, the first body unless given. `ends` says where each sensor's touches end; unless given, each has one.
+        - `gel_from_body`: poses of the bodies in the gel's frame, one row for each touch, those of
+          the first sensor first: position, mm, and quaternion (x, y, z, w), `[n_touches, 7]`; or
+          the position alone, `[n_touches, 3]`.
+        - `body`: indices of the bodies, `[n_touches]`; the first body unless given.
+        - `ends`: the end of each sensor's touches in the list, `[n_sensors]`; one touch for each
+          sensor unless given.
 
-        Returns pressures at the ports, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, `[n_sensors, 6]`.
+        Returns the pressures at the ports, kPa, `[n_sensors, n_taxels]`, and the wrenches,
+        `[n_sensors, 6]`: force on each gel, N, and torque about the centre of its top, N mm.
 
-        Raises `Error`, whose `field` is the array that has another shape, or numbers that cannot be.
+        Raises `Error` for an array with another shape or with numbers that are not allowed; its
+        `field` names the array.
         """
 
 @final
 class Imperfection:
-    """How far sensors are from perfect: from what each sensor's own imperfections are drawn.
+    """Sensor variation: the distributions from which each sensor's deviations from a perfect sensor
+    are drawn.
 
-    Keywords are the fields of `[imperfection]` in a file; each is 0 unless given, and `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of
-    a normal distribution about zero.
+    Keywords are the fields of the table `[imperfection]` in a file. Each is 0 unless given;
+    `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of a normal
+    distribution about zero.
 
-    - `gain_deviation`: of each taxel's gain, as part of it.
-    - `growth_deviation_per_kpa`: of how much each taxel's reading grows beyond proportion for each kPa of it, 1/kPa.
-    - `offset_deviation_kpa`: of each taxel's zero, kPa.
-    - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: how much all taxels drift with temperature, and the deviation of each beyond that, kPa/K.
-    - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the tare, K, and the time in which it forgets what it was, s.
-    - `cross_talk`, `cross_talk_deviation`: part of what each other taxel feels that a taxel reads as well, beyond what the gel spreads, and its deviation from pair to pair.
-    - `noise_deviation_kpa`: of each reading's noise, kPa.
-    - `quantum_kpa`: distance of the values that are told apart, kPa.
-    - `hysteresis`: half of the gap between loading and unloading, as part of the reading, 0 to 1.
-    - `dead_chance`, `stuck_chance`, `late_chance`: chances, 0 to 1, that a taxel reads zero for ever, stays at its first value, reads a frame late.
-    - `rate_hz`, `jitter`: frames that the bus delivers in a second, Hz (0: one at each step), and the deviation of the time between them, as part of it.
-    - `height_deviation_mm`, `place_deviation_mm`, `turn_deviation_rad`, `tilt_deviation_rad`: of how the sensor is mounted, mm and radians.
+    - `gain_deviation`: deviation of each taxel's gain, as a fraction of the gain.
+    - `growth_deviation_per_kpa`: deviation of the relative growth of each taxel's gain with its
+      reading, 1/kPa.
+    - `offset_deviation_kpa`: deviation of each taxel's zero, kPa.
+    - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: temperature drift that all taxels share, and
+      the deviation of each taxel's drift from it, kPa/K.
+    - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the
+      tare, K, and the time constant with which the temperature fluctuates, s.
+    - `cross_talk`, `cross_talk_deviation`: fraction of every other taxel's pressure that a taxel
+      reads in addition, beyond what the gel spreads, and its deviation from pair to pair.
+    - `noise_deviation_kpa`: deviation of the noise of each reading, kPa.
+    - `quantum_kpa`: resolution of the readings, kPa.
+    - `hysteresis`: half of the gap between loading and unloading, as a fraction of the reading, 0
+      to 1.
+    - `dead_chance`, `stuck_chance`, `late_chance`: probabilities, 0 to 1, that a taxel always reads
+      zero, that it stays at its first reading, and that its readings are late by one frame. Their
+      sum is at most 1.
+    - `rate_hz`, `jitter`: frames that the bus delivers in a second, Hz (0: one at each step), and
+      the deviation of the time between frames, as a fraction of it.
+    - `height_deviation_mm`, `place_deviation_mm`, `turn_deviation_rad`, `tilt_deviation_rad`:
+      deviations of the installation of the sensor: height, position, rotation about the vertical
+      axis, and tilt, mm and radians.
 
-    Raises `Error`, whose `field` is the one that cannot be.
+    Raises `Error` for a value that is not allowed; its `field` names the keyword.
     """
     def __new__(cls, **fields: _Number) -> Imperfection: ...
     @staticmethod
     def load(path: _Path) -> Imperfection:
-        """Reads a file (TOML) with the table `[imperfection]`, as `twintac fast imperfection` makes them.
+        """Reads a file (TOML) with the table `[imperfection]`. `twintac fast imperfection` makes such
+        files.
 
-        Raises `Error` with file, line and field if it is wrong.
+        Raises `Error` with file, line and field if the file is wrong, and with the file if it
+        cannot be read.
         """
+    def fields(self) -> dict[str, float]:
+        """All fields by name, including those that are 0."""
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class Coupling:
-    """How bodies and gels hold each other where bodies move freely: with friction, and with the gel's loss, which lets what hits it come to rest.
+    """The forces between gels and bodies that move freely: friction, and the damping of the gel, which
+    brings a body that hits it to rest.
 
+    - `sensor`: the sensor.
     - `friction`: Coulomb's coefficient of each body on each gel, 0 or more.
-    - `retardation_s`: time by which the gel's force leads its elastic one, s, as of a Kelvin-Voigt solid: `F + t dF/dt`. 0 for a gel without loss.
+    - `retardation_s`: time constant `t` of the gel's damping, s. The force is `F + t dF/dt` with
+      the elastic force `F`, as of a Kelvin-Voigt solid. 0 for a gel without damping.
 
-    Raises `Error`, whose `field` is the number that cannot be.
+    Raises `Error` for a number that is not allowed; its `field` names the argument.
     """
     def __new__(cls, sensor: Sensor, *, friction: float, retardation_s: float = 0.0) -> Coupling: ...
 
 @final
 class SensorBatch:
-    """Many sensors of one kind, each imperfect in its own way, stepped in one call. Their gels have rested. `len()` is the number of sensors.
+    """Many sensors of one kind, each with its own deviations, stepped in one call. Their gels are at
+    rest at first. `len()` is the number of sensors.
 
-    - `gel`: the fast gel of all of them.
-    - `bodies`: what may touch them, at least one.
-    - `imperfection`: from what each sensor's own imperfections are drawn; perfect sensors unless given.
-    - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
-    - `coupling`: how bodies and gels hold each other; neither friction nor loss unless given.
-    - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
-    - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
-    - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
+    - `gel`: the surrogate of their gel.
+    - `bodies`: the bodies that may touch them, at least one.
+    - `n_sensors`: number of sensors, from 1 to as many as give ten million readings: 1,250,000
+      sensors of eight taxels.
+    - `imperfection`: the sensor variation from which each sensor's deviations are drawn; perfect
+      sensors unless given.
+    - `twin`: the twin whose barometers they have, with its gains and viscoelastic relaxation;
+      readings are the pressures at the ports unless given.
+    - `coupling`: the forces between bodies and gels; neither friction nor damping unless given.
+    - `seed`: seed of the deviations. Sensor `n` is the same for the same seed, whatever the other
+      sensors are.
+    - `n_threads`: number of threads, at most 1024; as many as there are cores unless given. Results
+      do not depend on it.
 
-    Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number that is out of its range.
+    Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number
+    out of its range.
     """
     def __new__(
         cls,
@@ -1027,10 +1401,12 @@ class SensorBatch:
     ) -> SensorBatch: ...
     @property
     def provenance(self) -> _Simulated:
-        """What every reading is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     def set_bodies(self, bodies: Sequence[Body]) -> None:
-        """Puts other bodies in the place of those that may touch. What gels hold, they go on to hold,
-        under the things' `touch_id`.
+        """Replaces the bodies that may touch the sensors. The gels keep the state of each touch under
+        its `touch_id`.
+
+        - `bodies`: the new bodies, at least one.
 
         Raises `Error` if there is no body.
         """
@@ -1043,69 +1419,95 @@ class SensorBatch:
         *,
         touch_id: _Integers | None = None,
     ) -> tuple[_Single, _Single]:
-        """One more moment of every sensor, `since_previous_s` after the last. `gel_from_body`, `body`
-        and `ends` are those of `FastBatch.read`.
+        """Computes one more step of every sensor.
 
-        `touch_id`, an integer for each touch, says which thing it is: the same as long as it is the
-        same thing, and another for each other thing on that sensor. A sensor with a `Coupling`
-        remembers each thing that touches it under this number, wherever it stands in the list and
-        whatever body it has, so it has to be given. What is not in the list is forgotten.
+        - `since_previous_s`: time since the last step, s.
+        - `gel_from_body`, `body`, `ends`: the touches, as in `FastBatch.read`. Poses are in the
+          frame of the sensor as described.
+        - `touch_id`: an integer for each touch, which identifies the touching thing, `[n_touches]`.
+          It is the same as long as it is the same thing, and differs between things on one sensor.
+          Sensors with a `Coupling` need it: they keep the state of each touch under this number,
+          whatever its position in the list and its body. The state of a touch that is not in the
+          list is deleted.
 
-        Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, in the frame of
-        the sensor where it is, `[n_sensors, 6]`.
+        Returns the last readings that the bus of each sensor delivered, kPa,
+        `[n_sensors, n_taxels]`, and the wrenches, `[n_sensors, 6]`: force on each gel, N, and
+        torque about the centre of its top, N mm, in the frame of the sensor as it is installed.
 
-        Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot
-        be, and if a thing touches one sensor twice. Nothing has been done then.
+        Raises `Error` for an argument with another shape or with numbers that are not allowed (its
+        `field` names the argument), and if a thing touches one sensor twice. The sensors are then
+        unchanged.
         """
+    def slip_of_touches(self) -> _Single:
+        """How fast each thing slipped over its gel in the last step, mm/s, along x and y of the gel,
+        in the order of the touches, `[n_touches, 2]`: 0 while it sticks. Without a `Coupling` there
+        are none: `[0, 2]`.
+        """
+    def read_ground_truth(self) -> _Single:
+        """The readings of the last step without sensor variation, kPa, `[n_sensors, n_taxels]`."""
     def wrench_of_touches(self) -> _Single:
-        """What each thing did in the last step by itself, in the order of the touches: force on the
-        gel, N, and torque about the top of its middle, N mm,
-        `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
+        """Wrench of each touch by itself in the last step, in the order of the touches,
+        `[n_touches, 6]`: force on the gel, N, and torque about the centre of its top, N mm, in the
+        frame of the sensor as described. Without a `Coupling` there are none: `[0, 6]`.
         """
     def state(self, sensor: _Count) -> SensorState:
-        """What one sensor, counted from 0, is and remembers now: set back, it goes on to the same
-        bits.
+        """The state of one sensor. A sensor that is set back to it continues with the same bits.
+
+        - `sensor`: index of the sensor, from 0.
         """
     def set_state(self, sensor: _Count, state: SensorState) -> None:
-        """Lets one sensor, counted from 0, go on from a state, of its own or of another sensor of such
-        a batch.
+        """Sets one sensor to a state, its own or that of another sensor of such a batch.
 
-        Raises `Error` for the state of a sensor with other taxels, or with a twin where this one
-        has none.
+        - `sensor`: index of the sensor, from 0.
+        - `state`: the state.
+
+        Raises `Error` for the state of a sensor with another number of taxels, and for one with a
+        twin if these sensors have none, or the reverse.
         """
     def rest(self, sensor: _Count) -> None:
-        """Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has."""
+        """Resets one sensor to rest until its next step. Its deviations stay.
+
+        - `sensor`: index of the sensor, from 0.
+        """
     def replace(self, sensor: _Count, number: _Count) -> None:
-        """Puts another sensor in the place of one, counted from 0, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
-        below the number of sensors are the first ones.
+        """Replaces one sensor by another one at rest, whose deviations are drawn anew.
+
+        - `sensor`: index of the sensor, from 0.
+        - `number`: identifies the new sensor. Numbers below the number of sensors give the first
+          sensors of the batch.
         """
     def __len__(self) -> int: ...
 
 @final
 class SensorState:
-    """What one sensor of a `SensorBatch` is and remembers at a moment: its imperfections and the noise
-    to come, its twin's memory, and what its gel holds. What `SensorBatch.state`
-    returns.
+    """The state of one sensor of a `SensorBatch` at a moment: its deviations, the state of its noise,
+    the relaxation of its twin, and the contacts of its gel. `SensorBatch.state` returns it.
     """
     def __copy__(self) -> SensorState:
-        """It never changes: a copy is itself."""
+        """Returns the object itself, which never changes."""
     def __deepcopy__(self, _memo: object, /) -> SensorState:
-        """It never changes: a copy is itself."""
+        """Returns the object itself, which never changes."""
 
 @final
 class Tasks:
-    """Many environments of one task, each with a sensor of its own, stepped in one call. `len()` is the number of environments. `twintac.gymnasium` has them as environments
-    of Gymnasium, and says what each task observes, does and rewards.
+    """Many environments of one task of reinforcement learning, each with its own sensor, stepped in
+    one call. `len()` is the number of environments. `twintac.gymnasium` has them as Gymnasium
+    environments, and describes observations, actions and rewards of each task.
 
-    - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`.
-    - `gel`: PhysTac's unless given.
-    - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
-    - `autoreset`: when an environment whose episode is over begins the next one: in the next step (`"NextStep"`), which ignores its action and has a reward of zero; in
-      the same step (`"SameStep"`); or when `reset` is called (`"Disabled"`).
-    - `n_environments`: 1 or more, and at most ten million readings of their sensors: 1,250,000 of eight taxels.
-    - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
+    - `kind`: the task: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`.
+    - `n_environments`: number of environments, from 1 to as many as give ten million readings:
+      1,250,000 with sensors of eight taxels.
+    - `gel`: the surrogate of the gel; PhysTac's unless given.
+    - `imperfection`: the sensor variation from which the sensor of each episode is drawn; that of
+      working sensors unless given.
+    - `autoreset`: when an environment whose episode has ended begins the next one: in the next step
+      (`"NextStep"`), which ignores its action and has a reward of zero; in the same step
+      (`"SameStep"`); or when `reset` is called (`"Disabled"`).
+    - `n_threads`: number of threads, at most 1024; as many as there are cores unless given. Results
+      do not depend on it.
 
-    Raises `Error` for a task that is not there, a gel that it cannot use, and a number that is out of its range.
+    Raises `Error` for a task that does not exist, for a gel that the task cannot use, and for a
+    number out of its range.
     """
     def __new__(
         cls,
@@ -1119,97 +1521,158 @@ class Tasks:
     ) -> Tasks: ...
     @property
     def provenance(self) -> _Simulated:
-        """What every number is: simulated."""
+        """Provenance of all numbers: `"simulated"`."""
     @property
     def n_observed(self) -> int:
-        """Numbers of an observation, each from -10 to 10."""
+        """Length of an observation. Each of its numbers is from -10 to 10."""
     @property
     def n_actions(self) -> int:
-        """Numbers of an action, each from -1 to 1."""
+        """Length of an action. Each of its numbers is from -1 to 1."""
     @property
     def figures(self) -> list[str]:
-        """Names of what is true in an environment and not observed, with units; `[n_figures]`."""
+        """Names, with units, of the figures: true values of an environment that are not observed;
+        `[n_figures]`.
+        """
     def seed(self, seeds: Sequence[_Count | None] | npt.NDArray[np.integer[Any]]) -> None:
-        """Gives environments seeds, one for each, from the next reset on; `None` leaves an environment the one that it has.
+        """Sets the seeds of the environments. They take effect at the next reset.
 
-        Raises `Error` for another number of seeds, and for a seed that is not from 0 to 2⁶⁴ - 1.
+        - `seeds`: a seed for each environment, from 0 to 2⁶⁴ - 1; with `None`, an environment keeps
+          its seed.
+
+        Raises `Error` for another number of seeds, and for a seed out of this range.
         """
     def reset(self, which: npt.ArrayLike | None = None) -> tuple[_Single, _Single]:
-        """Begins the next episode of all environments, or of those where `which`, `[n_environments]`, is true. Returns observations, `[n_environments, n_observed]`, and figures,
-        `[n_environments, n_figures]`; zeros of the others.
+        """Begins the next episode of environments.
+
+        - `which`: whether each environment is reset, `[n_environments]`; all of them unless given.
+
+        Returns observations, `[n_environments, n_observed]`, and figures,
+        `[n_environments, n_figures]`. They are zero for environments that are not reset.
         """
     def step(
         self, actions: _Floats
     ) -> tuple[_Single, _Float, _Bool, _Bool, _Single, tuple[_Single, _Single] | None]:
-        """One step of every environment. `actions` is `[n_environments, n_actions]`, each from -1 to 1.
+        """Computes one step of every environment.
 
-        Returns observations, `[n_environments, n_observed]`; rewards, whether the task is over, and whether time is over, each `[n_environments]`; figures,
-        `[n_environments, n_figures]`; and, of environments that began anew in the same step, what was observed before and the figures then, or `None` if there are none.
+        - `actions`: the actions, each number from -1 to 1; `[n_environments, n_actions]`.
+
+        Returns observations, `[n_environments, n_observed]`; rewards, `[n_environments]`; whether
+        the task has ended, `[n_environments]`; whether the time limit has ended the episode,
+        `[n_environments]`; figures, `[n_environments, n_figures]`; and the last observations and
+        figures of environments that began a new episode in the same step, or `None` if there are
+        none.
 
         Raises `Error` for actions of another shape, or that are not finite.
         """
     def picture(self, environment: _Count) -> npt.NDArray[np.uint8]:
-        """A picture of one environment, counted from 0: what is there from above, and what its sensor reads. `[240, 600, 3]`, red, green and blue, 0 to 255."""
+        """Draws one environment: the scene from above, and the readings of its sensor.
+
+        - `environment`: index of the environment, from 0.
+
+        Returns red, green and blue of each pixel, 0 to 255; `[240, 600, 3]`.
+        """
     def __len__(self) -> int: ...
 
 @final
 class Inverse:
-    """Finds from readings what touches: place, depth, force, and which of the known shapes.
+    """Contact estimation from readings: location, depth and force of the contact, and which of the
+    known shapes it is.
 
-    Made like this it knows what is read by a fast gel and the shapes, by name, that may touch it, upright; `of_twin` takes a trained twin in its place, `of_tables` tables of readings.
-    Keywords are settings:
+    The constructor takes the surrogate of the gel as the model of the readings. `of_twin` takes a
+    trained twin instead, and `of_tables` takes tables of readings.
 
-    - `noise_kpa`: standard deviation of a reading's noise, kPa; 0.05 unless given.
-    - `model_part`, `model_part_of_largest`: standard deviation of the model's error as part of each reading, 0.03, and as part of the frame's largest one, 0.01.
-    - `force_part`: the same of the force, as part of it; 0.03.
+    - `gel`: the surrogate of the gel.
+    - `shapes`: the known shapes that may touch the gel, by name. They are upright.
+
+    The other keywords are settings, here with their defaults:
+
+    - `noise_kpa`: standard deviation of a reading's noise, kPa; 0.05.
+    - `model_part`, `model_part_of_largest`: standard deviation of the model's error, as a fraction
+      of each reading, 0.03, and as a fraction of the largest reading of the frame, 0.01.
+    - `force_part`: standard deviation of the model's error of the force, as a fraction of the
+      force; 0.03.
     - `correlated_s`: time within which errors of the model count as one, s; 0.1.
-    - `touch_deviations`: a contact is what reads so many deviations of the noise, at one taxel at least; 6.
-    - `place_walk_mm`, `depth_walk_mm`, `spin_walk_rad`: how far a contact wanders in a second: 3 mm, 2 mm, 1 radian.
-    - `shape_memory_s`: time after which what told the shape is forgotten to a part of 1/e, s; 3.
-    - `n_starts`, `n_steps`: presses of each shape that are followed at once, 3, and steps towards the best of them in a frame, 1.
-    - `deepest_mm`: deepest press that is thought of, mm; 5. Not deeper than the gel was taught.
+    - `touch_deviations`: there is a contact if at least one reading is this many standard
+      deviations of the noise above zero; 6.
+    - `place_walk_mm`, `depth_walk_mm`, `spin_walk_rad`: standard deviation of the random motion of
+      a contact in one second: location, 3 mm, depth, 2 mm, and yaw, 1 radian.
+    - `shape_memory_s`: time after which evidence for a shape is reduced to 1/e, s; 3.
+    - `n_starts`, `n_steps`: number of possible presses of each shape that are followed at once, 3,
+      and number of steps that each of them takes in a frame, 1.
+    - `deepest_mm`: largest depth that is considered, mm; 5. Give no more than the largest depth
+      that the surrogate was trained on.
 
-    Raises `Error`, whose `field` is the setting that cannot be, for a shape that cannot be, and if there is no shape.
+    Raises `Error` for a setting that is not allowed (its `field` names the setting), for an
+    impossible shape, and if there is no shape.
     """
     def __new__(cls, gel: FastGel, shapes: Mapping[str, Shape], **settings: _Number) -> Inverse: ...
     @staticmethod
     def of_tables(tables: Mapping[str, ReadingTable], **settings: _Number) -> Inverse:
-        """By what is read of each shape, by name, at places and depths: measured, or simulated. Keywords are those of the class, which has the names of the settings.
+        """An inverse that takes tables of readings, measured or simulated, as the model of the
+        readings.
 
-        Raises `Error` for tables of different numbers of taxels, a setting that cannot be, and if there is no shape.
+        - `tables`: for each shape, by name, the readings at locations and depths.
+
+        The other keywords are settings, as in the class.
+
+        Raises `Error` for tables with different numbers of taxels, for a setting that is not
+        allowed, and if there is no shape.
         """
     @staticmethod
     def of_twin(
         folder: _Path, indenters: Sequence[str] = ..., *, progress: Progress = None, **settings: _Number
     ) -> Inverse:
-        """By the trained twin in a folder (`Run.model_folder`), whose memory is taken off the readings. Shapes are the named indenters of its sensor, or all of them, turned as described.
-        Keywords are those of the class, which has the names of the settings; unless given, `noise_kpa` is 0.03, `model_part_of_largest` 0.02, `n_steps` 3 and
-        `deepest_mm` 2.5. Taxels that the description calls doubtful are not used. The gel is solved at places all over the taxels, which takes minutes; Ctrl-C stops it.
+        """An inverse that takes a trained twin as the model of the readings. It removes the twin's
+        viscoelastic relaxation from the readings. Excluded taxels (`doubtful` in the description)
+        are not used. The gel is computed by finite elements at locations all over the taxels, which
+        takes minutes; Ctrl-C stops it.
 
-        Raises `Error` for a folder that holds no twin, an indenter that the sensor does not have, and a setting that cannot be.
+        - `folder`: folder of the twin (`Run.model_folder`).
+        - `indenters`: names of the sensor's indenters that are the known shapes, in the described
+          orientation; all of them unless given.
+        - `progress`: display of the progress, see `Progress`.
+
+        The other keywords are settings, as in the class. Unless given, `noise_kpa` is 0.03,
+        `model_part_of_largest` 0.02, `n_steps` 3 and `deepest_mm` 2.5.
+
+        Raises `Error` for a folder that holds no twin, for an indenter that the sensor does not
+        have, and for a setting that is not allowed.
         """
     @property
     def shapes(self) -> list[str]:
-        """Names of the shapes; in alphabetical order, or of a twin as its sensor's description has its indenters."""
+        """Names of the known shapes, in alphabetical order; for a twin, in the order of the indenters
+        in the sensor description.
+        """
     def start(self, provenance: _Provenance) -> Tracker:
-        """Follows the contact of a sensor that nothing has touched yet. `provenance` says where its readings come from: `"real"`, `"emulated"` or `"simulated"`."""
-    def floor_map(self, spacing_mm: float = 0.5) -> FloorMap:
-        """Prepares maps of the pressure on the gel's floor under contacts, finer than the taxels: on a grid of this spacing, mm, in the middle of the gel. 0.5 mm makes about 2,500 points
-        of PhysTac's floor.
+        """Starts the contact estimation for a sensor that nothing has touched yet.
 
-        Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and for an inverse that is not of a fast gel.
+        - `provenance`: provenance of its readings: `"real"`, `"emulated"` or `"simulated"`.
+        """
+    def floor_map(self, spacing_mm: float = 0.5) -> FloorMap:
+        """Prepares maps of the pressure on the base of the gel under contacts, at more points than the
+        taxels.
+
+        - `spacing_mm`: spacing of the grid of points, which is centred on the gel, mm. 0.5 mm makes
+          about 2,500 points for PhysTac.
+
+        Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and
+        for an inverse without a surrogate.
         """
 
 @final
 class ReadingTable:
-    """What is read of one shape at the nodes of a grid over place and depth, for `Inverse.of_tables`. An axis of one node is not looked for. Between nodes readings are cubic.
+    """The readings under one shape at the nodes of a grid over location and depth, for
+    `Inverse.of_tables`. A coordinate whose axis has one node is not estimated. Between the nodes,
+    readings are interpolated with cubic polynomials.
 
-    - `x_mm`, `y_mm`: places of the shape's origin in the gel's plane, mm, evenly apart and increasing; `[n_x]` and `[n_y]`.
-    - `depth_mm`: depths below first touch, mm, evenly apart and increasing; `[n_depth]`.
+    - `x_mm`, `y_mm`: locations of the shape's origin in the gel's plane, mm, evenly spaced and
+      increasing; `[n_x]` and `[n_y]`.
+    - `depth_mm`: depths below first touch, mm, evenly spaced and increasing; `[n_depth]`.
     - `readings_kpa`: readings above the untouched sensor, kPa; `[n_depth, n_y, n_x, n_taxels]`.
     - `force_n`: force into the gel, N, `[n_depth, n_y, n_x]`; unknown unless given.
 
-    Raises `Error`, whose `field` is the array that has another shape, or numbers that cannot be.
+    Raises `Error` for an array with another shape or with numbers that are not allowed; its `field`
+    names the array.
     """
     def __new__(
         cls, x_mm: _Floats, y_mm: _Floats, depth_mm: _Floats, readings_kpa: _Floats, force_n: _Floats | None = None
@@ -1217,79 +1680,103 @@ class ReadingTable:
 
 @final
 class FloorMap:
-    """Reads the pressure on a gel's floor on a grid: what a contact would make there by the fast gel. What `Inverse.floor_map` returns."""
+    """Computes the pressure on the base of a gel under an estimated contact, on a grid of points, with
+    the surrogate. `Inverse.floor_map` returns it.
+    """
     @property
     def provenance(self) -> _Simulated:
-        """What every pressure is: simulated, whatever the readings were that the contact was found from."""
+        """Provenance of the pressures: `"simulated"`, whatever the provenance of the readings from
+        which the contact was estimated.
+        """
     @property
     def x_mm(self) -> _Float:
-        """Places of the columns in the gel's plane, mm; `[n_columns]`."""
+        """Positions of the columns along x in the gel's plane, mm; `[n_columns]`."""
     @property
     def y_mm(self) -> _Float:
-        """Places of the rows in the gel's plane, mm; `[n_rows]`."""
+        """Positions of the rows along y in the gel's plane, mm; `[n_rows]`."""
     def read(self, contact: Contact) -> _Single:
-        """The map under a contact that the same inverse has found, kPa; `[n_rows, n_columns]`, the row of smallest y first. Each point is the mean over a disc as large as a port.
+        """Computes the map under a contact that the same inverse has estimated.
 
-        Raises `Error` for a contact that another inverse has found.
+        - `contact`: the contact.
+
+        Returns the pressures, kPa, `[n_rows, n_columns]`, the row of smallest y first. Each value
+        is the mean over a disc as large as a port.
+
+        Raises `Error` for a contact that another inverse has estimated.
         """
 
 @final
 class Tracker:
-    """Follows the contact of one sensor, frame by frame: what `Inverse.start` returns."""
+    """Estimates the contact of one sensor, frame by frame. `Inverse.start` returns it."""
     @property
     def provenance(self) -> _Provenance:
-        """Where the readings come from: `"real"`, `"emulated"` or `"simulated"`."""
+        """Provenance of the readings: `"real"`, `"emulated"` or `"simulated"`."""
     def update(self, since_previous_s: float, readings_kpa: _Floats) -> Contact | None:
-        """Takes a frame, `since_previous_s` after the one before: readings above the untouched sensor, kPa, `[n_taxels]`. Of an inverse by a twin, a NaN is a taxel without
-        a usable reading: its last usable one stands. Returns what touches, or `None` if the readings are within noise.
+        """Takes one more frame, and estimates the contact.
 
-        Raises `Error` for a time below 0, another number of readings, and readings that are not finite or beyond a million kPa.
+        - `since_previous_s`: time since the previous frame, s.
+        - `readings_kpa`: readings above the untouched sensor, kPa; `[n_taxels]`. With a twin as the
+          model, NaN marks a taxel without a usable reading; its last usable reading is taken.
+
+        Returns the contact, or `None` if the readings are within noise.
+
+        Raises `Error` for a time below 0, for another number of readings, and for readings that are
+        not finite or beyond a million kPa.
         """
 
 @final
 class Contact:
-    """What touches, with how sure that is: what `Tracker.update` returns. Deviations are standard deviations. An inverse by tables may not know the force: it is 0 then."""
+    """The estimated contact, with its uncertainty: the result of `Tracker.update`. Deviations are
+    standard deviations. An inverse of tables (`Inverse.of_tables`) may not know the force, which is
+    0 then.
+    """
     @property
     def provenance(self) -> _Provenance:
-        """Where the readings come from: `"real"`, `"emulated"` or `"simulated"`."""
+        """Provenance of the readings: `"real"`, `"emulated"` or `"simulated"`."""
     @property
     def shape(self) -> str:
-        """Name of the most probable shape, of which the rest is said."""
+        """Name of the most probable shape. The other properties describe the contact of this shape."""
     @property
     def shape_probabilities(self) -> dict[str, float]:
-        """How probable each of the known shapes is; they sum up to 1."""
+        """Probability of each known shape, by name. The sum is 1."""
     @property
     def place_mm(self) -> tuple[float, float]:
-        """Place of the shape's origin in the gel's plane, x and y, mm."""
+        """Location of the shape's origin in the gel's plane: x and y, mm."""
     @property
     def depth_mm(self) -> float:
         """Depth below first touch, mm."""
     @property
     def spin_rad(self) -> float:
-        """Turn about the vertical, radians, up to what makes no difference to the shape; 0 for a round one."""
+        """Yaw (rotation about the vertical axis), radians, modulo the symmetry of the shape; 0 for a
+        round shape.
+        """
     @property
     def force_n(self) -> float:
         """Force into the gel, N."""
     @property
     def place_deviation_mm(self) -> tuple[float, float]:
-        """Deviation of the place along x and along y, mm."""
+        """Standard deviation of the location along x and along y, mm."""
     @property
     def depth_deviation_mm(self) -> float:
-        """Deviation of the depth, mm."""
+        """Standard deviation of the depth, mm."""
     @property
     def spin_deviation_rad(self) -> float:
-        """Deviation of the spin, radians; 0 for a round shape."""
+        """Standard deviation of the yaw, radians; 0 for a round shape."""
     @property
     def force_deviation_n(self) -> float:
-        """Deviation of the force, N."""
+        """Standard deviation of the force, N."""
     @property
     def covariance(self) -> _Float:
-        """Covariance of x, y and depth, mm, and spin, radians; `[4, 4]`."""
+        """Covariance of x, y and depth, mm, and yaw, radians, in this order; `[4, 4]`."""
     @property
     def misfit(self) -> float:
-        """What the shape leaves of the readings, in deviations of a frame by itself: far above 1, something else touches."""
+        """Root mean square of the residuals of the readings, in standard deviations of a single frame.
+        If it is far above 1, something else touches the gel.
+        """
 
 def _restored(class_: str, state: bytes) -> Any:
-    """Makes a value of what a pickle has kept of it."""
+    """Restores a pickled object from its class name and its state."""
 def command() -> int:
-    """Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input, 3 if a bench was stopped safely."""
+    """Runs the command line (`sys.argv`) as the command `twintac` does. Returns the exit code: 0 on
+    success, 2 for bad input, 3 if a test setup was stopped safely.
+    """

@@ -1,6 +1,8 @@
-"""Data sets on many machines: a plain task of Ray for each shard, onto any path that fsspec knows.
+"""Data sets on many machines: one Ray task for each shard, written to any path that fsspec
+supports.
 
-`make_shard` is the task by itself, for other schedulers. It needs the packages ray and fsspec: `pip install './python[ray]'` in a checkout brings them.
+`make_shard` is the task by itself, for other schedulers. The module needs the packages ray and
+fsspec; `pip install './python[ray]'` in a checkout installs them.
 """
 
 import hashlib
@@ -32,21 +34,32 @@ def make_dataset(
     progress: Progress = None,
     **options: Any,
 ) -> list[dict[str, Any]]:
-    """Makes all shards of a data set as tasks of the Ray cluster that is connected, or else of one on this machine.
+    """Makes all shards of a data set as tasks of the connected Ray cluster, or of a local one.
 
-    - `folder`: where the shards go: a folder that all machines see, or a URL such as `s3://bucket/presses`, with `storage_options` as fsspec takes them.
-    - `cpus`: cores of a task, and threads that it presses with.
-    - `progress`: as everywhere in this package.
-    - `options`: those of `twintac.Dataset`. Files are read where tasks run.
+    A task whose worker fails is repeated elsewhere. Complete shards are kept, so that the same call
+    continues a data set that was interrupted. `twintac dataset --merge` then merges the shards of a
+    folder into one file.
 
-    Returns the manifests of the shards, in order. A task whose worker dies is done again elsewhere; what is complete is kept. The same call goes on where one was stopped.
-    `twintac dataset --merge` then makes one file of a folder.
+    Args:
+        folder: destination of the shards: a folder that all machines see, or a URL such as
+            `s3://bucket/presses`.
+        n_shards: number of shards.
+        cpus: cores of a task, and threads with which it computes presses.
+        storage_options: options of fsspec for the URL.
+        progress: display of the progress, see `twintac.Progress`.
+        options: arguments of `twintac.Dataset`. Files are read where the tasks run.
 
-    Raises `twintac.Error` for options that cannot be and for a folder of another data set, `ImportError` if a package is missing.
+    Returns:
+        The manifests of the shards, in order.
+
+    Raises:
+        twintac.Error: for options that are out of range, and for a folder that holds another data
+            set.
+        ImportError: if a package is missing.
     """
     ray = _needed("ray")
     options = {name: _absolute(value) if name in _PATHS else value for name, value in options.items()}
-    Dataset(**options)  # what is wrong with them is said here, and not by every task
+    Dataset(**options)  # raises their errors here once, and not in every task
     task = ray.remote(make_shard).options(
         num_cpus=cpus, max_retries=-1, runtime_env={"env_vars": {"RAYON_NUM_THREADS": str(cpus)}}
     )
@@ -78,12 +91,25 @@ def make_shard(
     storage_options: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> dict[str, Any]:
-    """Makes shard `shard` of `of`, counted from 1, in a folder or at a URL, unless it is complete there. Returns its manifest.
+    """Makes one shard in a folder or at a URL, unless it is complete there.
 
-    It is made on this machine first. Each file is then written under a temporary name and renamed, the manifest last: whatever else works there, a shard with a manifest is
-    whole. `options` are those of `twintac.Dataset`, `storage_options` those of fsspec.
+    The shard is first made on this machine. Each file is then written under a temporary name and
+    renamed, the manifest last. So a shard with a manifest is complete, even with other writers.
 
-    Raises `twintac.Error` for options that cannot be and for a folder of another data set, `ImportError` if a package is missing.
+    Args:
+        folder: the folder or URL.
+        shard: number of the shard, from 1.
+        of: number of all shards.
+        storage_options: options of fsspec for the URL.
+        options: arguments of `twintac.Dataset`.
+
+    Returns:
+        The manifest of the shard.
+
+    Raises:
+        twintac.Error: for options that are out of range, and for a folder that holds another data
+            set.
+        ImportError: if a package is missing.
     """
     files, root = _needed("fsspec").core.url_to_fs(folder, **(storage_options or {}))
     dataset = Dataset(**options)
@@ -131,7 +157,7 @@ def _sha256(files: Any, path: str) -> str:
 
 
 def _absolute(path: Any) -> Any:
-    """A path as tasks in other folders have it; what is none is left alone."""
+    """An absolute path, valid for tasks in other folders; URLs and other values are unchanged."""
     if isinstance(path, os.PathLike):
         path = os.fspath(path)
     return os.path.abspath(path) if isinstance(path, str) and "://" not in path else path

@@ -1,6 +1,7 @@
-"""A gel under a hand, in a notebook: sliders take an indenter over and into it, and what its taxels read is drawn.
+"""A notebook widget: sliders move an indenter over and into a gel, and the readings of the taxels
+are drawn.
 
-Needs ipywidgets: `pip install 'twintac[notebook]'`.
+It needs ipywidgets: `pip install 'twintac[notebook]'`.
 
     from twintac import Sensor
     from twintac.widget import GelWidget
@@ -27,20 +28,28 @@ except ModuleNotFoundError as _absent:
 _Point = npt.NDArray[np.float64]
 
 TRAVEL_MM = 0.5
-"""Farthest that the indenter goes in one step of the solver."""
+"""Longest motion of the indenter in one step of the solver, mm."""
 STEP_S = 0.02
+"""Time of one step of the solver, s."""
 CLEAR_MM = 0.5
-"""How far above the gel the indenter begins."""
+"""Clearance of the indenter above the gel at the start, mm."""
 
 
 class GelWidget(VBox):  # type: ignore[misc]
-    """A sensor's gel, pressed by sliders. All numbers are simulated.
+    """A sensor's gel, pressed with sliders. All numbers are simulated.
 
-    - `indenter`: the one to begin with, one of `Sensor.indenters`; the first of them unless given.
-    - `deepest_mm`: how deep the sliders go below first touch in the middle of the gel, mm, above 0.
-    - `max_nodes`: most nodes of the mesh: more answer later and err less. One that is refined at an indenter's rim has up to two thirds more.
+    Args:
+        sensor: the sensor.
+        indenter: the first indenter, one of `Sensor.indenters`; the first of them unless given.
+        deepest_mm: lowest position of the depth slider below first touch in the middle of the gel,
+            mm, above 0.
+        max_nodes: largest number of nodes of the mesh: with more nodes an answer takes longer and
+            has a smaller error. A mesh that is refined at an indenter's rim has up to two thirds
+            more.
 
-    Raises `Error` for an indenter that the sensor does not have, and where the gel cannot be meshed.
+    Raises:
+        Error: for an indenter that the sensor does not have, for a `deepest_mm` out of range, and
+            if the gel cannot be meshed.
     """
 
     def __init__(self, sensor: Sensor, indenter: str | None = None, *, deepest_mm: float = 2.0, max_nodes: int = 1500) -> None:
@@ -71,7 +80,7 @@ class GelWidget(VBox):  # type: ignore[misc]
 
     @property
     def state(self) -> GelState:
-        """The gel as it is."""
+        """The current state of the gel."""
         return self._state
 
     @property
@@ -80,7 +89,7 @@ class GelWidget(VBox):  # type: ignore[misc]
         return self._readings_kpa
 
     def _take_up(self, indenter: str) -> None:
-        """Meshes the gel for an indenter that presses anywhere."""
+        """Meshes the gel for an indenter that may press anywhere."""
         low, high = self.sensor.bounds_mm
         middle = Pose((0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), high[2]))
         touch_mm = self._gel.touch(indenter, middle).position_mm[2]
@@ -95,11 +104,12 @@ class GelWidget(VBox):  # type: ignore[misc]
         try:
             self._take_up(change["new"])
         except Error as error:
-            self._missing = str(error)  # the gel is still that of the indenter before, which nothing shows any more
+            # The mesh is still that of the previous indenter, which is no longer shown.
+            self._missing = str(error)
         self._moved(None)
 
     def _moved(self, _: Any) -> None:
-        """Takes the indenter to where the sliders are."""
+        """Moves the indenter to the position of the sliders."""
         if self._missing:
             self.shown.value = f"<p><b>{escape(self._missing)}</b></p>"
             return
@@ -114,7 +124,7 @@ class GelWidget(VBox):  # type: ignore[misc]
         self._show(fault)
 
     def _way(self, to: _Point) -> Iterator[_Point]:
-        """Places on the straight way to one. A gel that nothing presses yet is first met from above."""
+        """Positions on the straight line to `to`. The first approach comes from above."""
         start = np.array([to[0], to[1], self._touch_mm + CLEAR_MM]) if self._at is None else self._at
         steps = max(1, int(np.ceil(np.linalg.norm(to - start) / TRAVEL_MM)))
         if self._at is None:

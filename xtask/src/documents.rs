@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
+use crate::code::length::{MOST_COLUMNS, is_wide};
+
 /// Folders of the checkout that documents name files of.
 const FOLDERS: [&str; 13] = [
     "crates",
@@ -22,6 +24,11 @@ const FOLDERS: [&str; 13] = [
     "python",
 ];
 
+/// Reads a file of the checkout.
+pub fn read(root: &Path, file: &str) -> Result<String> {
+    fs::read_to_string(root.join(file)).with_context(|| format!("reading {file}"))
+}
+
 /// Writes what stands between `<!-- NAME -->` and `<!-- end -->` anew.
 pub fn replace_part(text: &mut String, name: &str, part: &str) -> Result<()> {
     let begin = format!("<!-- {name} -->\n");
@@ -34,6 +41,22 @@ pub fn replace_part(text: &mut String, name: &str, part: &str) -> Result<()> {
         .with_context(|| format!("the part `{name}` has no end"))?;
     text.replace_range(from..from + length, part);
     Ok(())
+}
+
+/// An item of a list, in lines of at most [`MOST_COLUMNS`].
+pub fn item(text: &str) -> String {
+    let mut lines = String::new();
+    let mut line = "-".to_owned();
+    for word in text.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > MOST_COLUMNS {
+            lines += &line;
+            lines += "\n";
+            line = " ".to_owned();
+        }
+        line += " ";
+        line += word;
+    }
+    lines + &line + "\n"
 }
 
 /// Each path in backquotes in README.md and ARCHITECTURE.md exists, unless it has a placeholder.
@@ -55,7 +78,8 @@ pub fn files_named_exist(root: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Each link between documents leads to a file: those at the root, those of `docs`, and the README of each package.
+/// Each link between documents leads to a file: those at the root, those of `docs`, and the README
+/// of each package.
 pub fn links_lead_somewhere(root: &Path) -> Result<()> {
     for document in documents(root)? {
         let text =
@@ -76,7 +100,31 @@ pub fn links_lead_somewhere(root: &Path) -> Result<()> {
     Ok(())
 }
 
-fn documents(root: &Path) -> Result<Vec<PathBuf>> {
+/// Lines of prose that are wider than a reader sees: those of tables, headings, pictures and code
+/// are left out, and so are pages that programs write.
+pub fn wide_lines(root: &Path) -> Result<Vec<String>> {
+    let written = ["docs/benchmarks", "docs/verification"].map(|folder| root.join(folder));
+    let is_written = |page: &PathBuf| written.iter().any(|folder| page.parent() == Some(folder));
+    let mut found = Vec::new();
+    for document in documents(root)?.into_iter().filter(|page| !is_written(page)) {
+        let text =
+            fs::read_to_string(&document).with_context(|| format!("reading {}", document.display()))?;
+        let mut is_code = false;
+        for (number, line) in text.lines().enumerate() {
+            let line = line.trim_start();
+            is_code ^= line.starts_with("```");
+            let is_prose = !is_code && !line.starts_with(['|', '#', '!', '<', '`', '$']);
+            if is_prose && is_wide(line) {
+                let place = document.strip_prefix(root)?.display();
+                found.push(format!("{place}:{}", number + 1));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The pages: those at the root, those of `docs`, and the README of each package.
+pub fn documents(root: &Path) -> Result<Vec<PathBuf>> {
     let mut documents = Vec::new();
     let mut pending = vec![
         root.to_owned(),
@@ -103,4 +151,22 @@ fn documents(root: &Path) -> Result<Vec<PathBuf>> {
 fn is_page(root: &Path, path: &Path) -> bool {
     let is_markdown = path.extension().is_some_and(|extension| extension == "md");
     is_markdown && (path.parent() == Some(root) || path.starts_with(root.join("docs")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_item_has_no_wide_line() {
+        let text = item(&"word ".repeat(50));
+        assert!(
+            text.starts_with("- word word") && text.contains("\n  word"),
+            "{text}"
+        );
+        assert!(
+            text.lines().all(|line| line.chars().count() <= MOST_COLUMNS),
+            "{text}"
+        );
+    }
 }

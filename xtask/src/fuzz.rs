@@ -1,4 +1,5 @@
-//! Fuzzing of what decodes the bench's wires, its logs and the force sensor's texts: `fuzz/` with libFuzzer, without a nightly compiler.
+//! Fuzzing of what decodes the bench's wires, its logs and the force sensor's texts: `fuzz/` with
+//! libFuzzer, without a nightly compiler.
 
 use std::collections::VecDeque;
 use std::fmt::Write as _;
@@ -19,7 +20,8 @@ const FLAGS: &str = "--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module -Cll
     -Cllvm-args=-sanitizer-coverage-trace-compares";
 /// Largest input, bytes: a log has a head of 5 KiB, frames and datagrams have less than one.
 const LARGEST_INPUT: usize = 16 << 10;
-/// Largest input that is kept, and most of a target's inputs together, bytes: what is committed stays small.
+/// Largest input that is kept, and most of a target's inputs together, bytes: what is committed
+/// stays small.
 const LARGEST_KEPT: usize = 8 << 10;
 const MOST_KEPT: usize = 48 << 10;
 /// Memory of the process, MiB. The harness bounds what is allocated more tightly.
@@ -227,7 +229,8 @@ fn run(root: &Path, programs: &Path, work: &Path, target: &str, options: &Option
     Ok(outcome)
 }
 
-/// Inputs in a folder that broke something. Slow ones are there as well, and may have been slow because the machine was busy.
+/// Inputs in a folder that broke something. Slow ones are there as well, and may have been slow
+/// because the machine was busy.
 fn broken(artifacts: &Path) -> Result<usize> {
     let mut count = 0;
     for entry in fs::read_dir(artifacts)? {
@@ -237,7 +240,8 @@ fn broken(artifacts: &Path) -> Result<usize> {
     Ok(count)
 }
 
-/// Puts the smallest inputs that reach all code that was reached, however often, into `kept`; as many as there is room for.
+/// Puts the smallest inputs that reach all code that was reached, however often, into `kept`; as
+/// many as there is room for.
 fn minimise(programs: &Path, work: &Path, target: &str, from: &[&PathBuf], kept: &Path) -> Result<()> {
     let merged = work.join("merged").join(target);
     if merged.exists() {

@@ -15,7 +15,8 @@ const MAKERS: [&str; 2] = ["Stage", "Recipe"];
 /// A structure, and the file that it stands in.
 type Structure = (PathBuf, ItemStruct);
 
-/// The table of ARCHITECTURE.md: each stage and each kept value, with the fields that it is made from.
+/// The table of docs/reference/crates.md: each stage and each kept value, with the fields that it
+/// is made from.
 pub fn table(root: &Path) -> Result<String> {
     let mut makers = Vec::new();
     let mut structures = Vec::new();
@@ -74,7 +75,8 @@ fn type_name(of: &Type) -> String {
     }
 }
 
-/// What is serialized of a structure, and so is in the key. One of its own file is meant before others of that name.
+/// What is serialized of a structure, and so is in the key. One of its own file is meant before
+/// others of that name.
 fn fields(structures: &[Structure], path: &Path, name: &str) -> Result<Vec<String>> {
     let named = || structures.iter().filter(|(_, structure)| structure.ident == name);
     let (path, structure) = named()

@@ -1,9 +1,17 @@
-//! What CI runs beside the tests of the crates, and the rules of this workspace.
+//! What CI runs beside the tests of the crates, and the rules of this workspace. No crate of the
+//! workspace is needed for it.
 //!
-//! The rules are tests: `xtask/tests/rules.rs` lists them. What each crate owns and must never know stands in `xtask/rooms.toml` ([`rooms`]); how
-//! source text is read and judged stands in [`code`]; the commands of README.md are run by [`readme`]; [`results`]
-//! keeps what the paper's experiments found; [`figures`] knows which sources made each committed figure, [`kept`] what each kept value is made from;
-//! [`web`] makes the page in which the gel is pressed.
+//! The rules are tests: `xtask/tests/rules.rs` lists them.
+//!
+//! - [`layers`]: what each crate owns and must not depend on (`xtask/crates.toml`).
+//! - [`code`]: how source text is read, and what is asked of it.
+//! - [`documents`], [`words`]: what is asked of pages; words that they do not use.
+//! - [`readme`]: the commands of README.md, run word for word.
+//! - [`results`]: the tables of results, from committed figures.
+//! - [`figures`]: which sources made each committed figure and picture.
+//! - [`kept`]: what each value that is kept in a file is made from.
+//! - [`fuzz`]: the search for bytes that break what decodes wires and files.
+//! - [`web`]: the page in which the gel is pressed.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -14,10 +22,11 @@ pub mod figures;
 pub mod fuzz;
 mod git;
 pub mod kept;
+pub mod layers;
 pub mod readme;
 pub mod results;
-pub mod rooms;
 pub mod web;
+pub mod words;
 
 use std::path::{Path, PathBuf};
 

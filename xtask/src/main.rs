@@ -1,5 +1,6 @@
-//! House rules and checks. `cargo xtask ci` lints, packages and tests as `.ci/run` does, which first installs Python programs that some tests compare ours with:
-//! where these are missing and `TWINTAC_PYTHON` is not set, those tests say so and look at nothing.
+//! House rules and checks. `cargo xtask ci` lints, packages and tests as `.ci/run` does, which
+//! first installs Python programs that some tests compare ours with: where these are missing and
+//! `TWINTAC_PYTHON` is not set, those tests say so and look at nothing.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -7,9 +8,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use xtask::cargo::{cargo, run};
-use xtask::{fuzz, readme, results, rooms, web};
+use xtask::{figures, fuzz, layers, readme, results, web};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | results [FILE] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench import [--json] | bench twin |
+const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | crates | results [FILE] | pictures [NAME] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench import [--json] | bench twin |
     bench sensors [--rewrite] |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | hardware [--sensor FILE [--chip NAME]] [--out DIR] [--release] | web | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
@@ -17,9 +18,11 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
   package every crate that can be published, without building it again; nothing may be uncommitted
   test   every test, optimised
   readme the commands of README.md in blocks that are tagged `sh`, word for word; those of `cargo test` last; the book's are run by python/tests/test_docs.py
-  rooms  writes the tables of ARCHITECTURE.md from xtask/rooms.toml
-  results  writes the tables of docs/results.md from docs/results/metrics.json and xtask/figures.toml, and fails where code that makes a figure has changed
+  crates  writes the tables of ARCHITECTURE.md and docs/reference/crates.md from xtask/crates.toml
+  results  writes the tables of docs/results.md and docs/results from committed figures, xtask/results.toml and xtask/figures.toml, and fails where code that makes a figure has changed
          since and nothing says so; FILE: the metrics.json of `reproduce --paper` at this commit, which is kept first
+  pictures  makes the pictures of the documents again: all, or those with NAME in their names; TWINTAC_PYTHON names a Python with twintac,
+         CHROMIUM a browser; `results` says which pictures are of older code
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
@@ -46,7 +49,8 @@ fn main() -> ExitCode {
         "package" => package(),
         "test" => test(),
         "readme" => readme::run(&xtask::root()),
-        "rooms" => rooms::page::write(&xtask::root()),
+        "crates" => layers::page::write(&xtask::root()),
+        "pictures" => figures::remake(&xtask::root(), &std::env::args().nth(2).unwrap_or_default()),
         "results" => results::write(&xtask::root(), std::env::args().nth(2).as_deref()),
         "bench" => bench(),
         "fuzz" => fuzz::fuzz(&std::env::args().skip(2).collect::<Vec<_>>()),

@@ -1,4 +1,5 @@
-//! The commands of README.md, run word for word: the lines of fenced blocks that are tagged `sh`, in the root of the checkout.
+//! The commands of README.md, run word for word: the lines of fenced blocks that are tagged `sh`,
+//! in the root of the checkout.
 //!
 //! Those of the book are run by `python/tests/test_docs.py`.
 
@@ -32,8 +33,9 @@ pub fn commands(document: &str) -> Vec<String> {
     commands
 }
 
-/// Runs the commands of the README.md at `root`, each once: those of `cargo test` last, so that their closing lines are. The first one that fails is an
-/// error, and so is one that leaves files which git does not ignore.
+/// Runs the commands of the README.md at `root`, each once: those of `cargo test` last, so that
+/// their closing lines are. The first one that fails is an error, and so is one that leaves files
+/// which git does not ignore.
 pub fn run(root: &Path) -> Result<()> {
     let mut run = commands(&fs::read_to_string(root.join("README.md")).context("reading README.md")?);
     ensure!(

@@ -1,4 +1,5 @@
-//! The page in which the gel is pressed: its engine compiled to WebAssembly, and one HTML file around it.
+//! The page in which the gel is pressed: its engine compiled to WebAssembly, and one HTML file
+//! around it.
 
 use std::ffi::OsStr;
 use std::fs;

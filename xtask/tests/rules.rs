@@ -1,6 +1,7 @@
 //! The rules of this workspace, each a test of its own name.
 //!
-//! What a crate must never know stands in `xtask/rooms.toml`: there is a test for each crate and word.
+//! What a crate must never know stands in `xtask/crates.toml`: there is a test for each crate and
+//! word.
 
 #![allow(clippy::print_stderr)] // what keeps the tests from starting
 
@@ -12,12 +13,12 @@ use std::sync::Arc;
 use anyhow::{Result, ensure};
 use libtest_mimic::{Arguments, Failed, Trial};
 use xtask::code::{Crate, circles, length, public, tested};
-use xtask::rooms::{Graph, Rooms, page, rule};
-use xtask::{documents, results};
+use xtask::layers::{Graph, Layers, page, rule};
+use xtask::{documents, results, words};
 
 /// What the tests look at, read once.
 struct Workspace {
-    rooms: Rooms,
+    layers: Layers,
     graph: Graph,
     crates: Vec<Crate>,
     words: public::Words,
@@ -29,7 +30,7 @@ fn main() -> ExitCode {
     match read() {
         Ok(workspace) => {
             let workspace = Arc::new(workspace);
-            let mut trials = of_rooms(&workspace);
+            let mut trials = of_layers(&workspace);
             trials.extend(of_sources(&workspace));
             trials.extend(of_documents(&workspace));
             libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
@@ -47,7 +48,7 @@ fn read() -> Result<Workspace> {
     let crates = Crate::read_all(&root, &graph)?;
     let facade = crates.iter().filter(|sources| sources.package == "twintac");
     Ok(Workspace {
-        rooms: Rooms::read(&root)?,
+        layers: Layers::read(&root)?,
         passed_on: facade.flat_map(public::passed_on).collect(),
         crates,
         words: public::Words::read(&root)?,
@@ -68,43 +69,43 @@ fn trial(
     })
 }
 
-fn of_rooms(workspace: &Arc<Workspace>) -> Vec<Trial> {
+fn of_layers(workspace: &Arc<Workspace>) -> Vec<Trial> {
     let mut trials = vec![trial(
         workspace,
-        "rooms::every_package_has_one".into(),
-        |all, _| rule::every_package_has_a_room(&all.rooms, &all.graph),
+        "crates::every_package_has_an_entry".into(),
+        |all, _| rule::every_package_has_an_entry(&all.layers, &all.graph),
     )];
-    let rooms = workspace.rooms.rooms.iter();
-    for room in rooms.filter(|room| !room.is_beside_the_workspace()) {
-        let place = &room.folder;
-        let (name, own) = (room.name().to_owned(), room.package());
-        if room.shelf().is_some() {
+    let crates = workspace.layers.crates.iter();
+    for entry in crates.filter(|entry| !entry.is_beside_the_workspace()) {
+        let place = &entry.folder;
+        let (name, own) = (entry.name().to_owned(), entry.package());
+        if entry.layer().is_some() {
             trials.push(trial(
                 workspace,
-                format!("rooms::{place}::arrows_point_down"),
-                move |all, _| rule::arrows_point_down(&all.rooms, &all.graph, all.rooms.room(&name)?),
+                format!("crates::{place}::arrows_point_down"),
+                move |all, _| rule::arrows_point_down(&all.layers, &all.graph, all.layers.entry(&name)?),
             ));
         }
         trials.push(trial(
             workspace,
-            format!("rooms::{place}::has_a_front_page"),
+            format!("crates::{place}::has_a_front_page"),
             move |all, root| rule::has_a_front_page(root, all.graph.package(&own)?),
         ));
     }
-    let of_table = workspace.rooms.rooms.iter().flat_map(|room| {
-        let bars = room
+    let of_table = workspace.layers.crates.iter().flat_map(|entry| {
+        let bars = entry
             .never
             .iter()
-            .map(|word| (room.name().to_owned(), word.clone()));
-        bars.map(|bar| (format!("rooms::{}", room.folder), bar))
+            .map(|word| (entry.name().to_owned(), word.clone()));
+        bars.map(|bar| (format!("crates::{}", entry.folder), bar))
     });
-    let of_invariants = workspace.rooms.invariants.iter().flat_map(|invariant| {
+    let of_invariants = workspace.layers.invariants.iter().flat_map(|invariant| {
         let bars = invariant.bars.iter().flat_map(|bar| {
-            let rooms = workspace.rooms.rooms.iter().filter(|room| bar.binds(room));
-            rooms.flat_map(|room| {
+            let crates = workspace.layers.crates.iter().filter(|entry| bar.binds(entry));
+            crates.flat_map(|entry| {
                 bar.never
                     .iter()
-                    .map(move |word| (room.name().to_owned(), word.clone()))
+                    .map(move |word| (entry.name().to_owned(), word.clone()))
             })
         });
         bars.map(|bar| (format!("invariants::{}::{}", invariant.name, bar.0), bar))
@@ -114,31 +115,38 @@ fn of_rooms(workspace: &Arc<Workspace>) -> Vec<Trial> {
             workspace,
             format!("{place}::never::{word}"),
             move |all, _| {
-                rule::never_knows(&all.rooms, &all.graph, &all.crates, all.rooms.room(&name)?, &word)
+                rule::never_knows(
+                    &all.layers,
+                    &all.graph,
+                    &all.crates,
+                    all.layers.entry(&name)?,
+                    &word,
+                )
             },
         ));
     }
     trials
 }
 
-/// Libraries that strangers use, and the one that is a program: what is public there needs no user here.
+/// Libraries that strangers use, and the one that is a program: what is public there needs no user
+/// here.
 const EXEMPT: [&str; 3] = ["phystac", "twintac", "xtask"];
 
 fn of_sources(workspace: &Arc<Workspace>) -> Vec<Trial> {
     let mut trials = Vec::new();
-    for room in &workspace.rooms.rooms {
-        if room.shelf().is_some() {
-            let folder = room.folder.clone();
+    for entry in &workspace.layers.crates {
+        if entry.layer().is_some() {
+            let folder = entry.folder.clone();
             trials.push(trial(
                 workspace,
-                format!("sources::{}::says_what_is_tested", room.folder),
+                format!("sources::{}::says_what_is_tested", entry.folder),
                 move |_, root| tested::says_what_is_tested(root, &folder),
             ));
         }
-        let folder = room.folder.clone();
+        let folder = entry.folder.clone();
         trials.push(trial(
             workspace,
-            format!("sources::{}::long_functions_say_why", room.folder),
+            format!("sources::{}::long_functions_say_why", entry.folder),
             move |_, root| {
                 none(
                     length::long_functions(root, &folder)?,
@@ -146,11 +154,22 @@ fn of_sources(workspace: &Arc<Workspace>) -> Vec<Trial> {
                 )
             },
         ));
-        let folder = room.folder.clone();
+        let folder = entry.folder.clone();
         trials.push(trial(
             workspace,
-            format!("sources::{}::files_are_one_idea_each", room.folder),
-            move |_, root| none(length::large_files(root, &folder)?, "look for the missing room"),
+            format!("sources::{}::files_are_one_idea_each", entry.folder),
+            move |_, root| none(length::large_files(root, &folder)?, "look for the second idea"),
+        ));
+        let folder = entry.folder.clone();
+        trials.push(trial(
+            workspace,
+            format!("sources::{}::comments_are_not_wide", entry.folder),
+            move |_, root| {
+                none(
+                    length::wide_comments(root, &folder)?,
+                    "a comment is wider than 100 columns",
+                )
+            },
         ));
     }
     for (index, sources) in workspace.crates.iter().enumerate() {
@@ -176,8 +195,8 @@ fn of_documents(workspace: &Arc<Workspace>) -> Vec<Trial> {
     vec![
         trial(
             workspace,
-            "documents::rooms_are_those_of_rooms_toml".into(),
-            |all, root| page::is_fresh(root, &all.rooms),
+            "documents::crates_are_those_of_crates_toml".into(),
+            |all, root| page::is_fresh(root, &all.layers),
         ),
         trial(
             workspace,
@@ -187,6 +206,17 @@ fn of_documents(workspace: &Arc<Workspace>) -> Vec<Trial> {
         trial(workspace, "documents::files_named_exist".into(), |_, root| {
             documents::files_named_exist(root)
         }),
+        trial(workspace, "documents::lines_are_not_wide".into(), |_, root| {
+            none(
+                documents::wide_lines(root)?,
+                "a line is wider than 100 columns: one sentence or clause a line",
+            )
+        }),
+        trial(
+            workspace,
+            "documents::words_are_those_of_the_field".into(),
+            |_, root| none(words::gone_words(root)?, "words that are not of the field"),
+        ),
         trial(workspace, "documents::links_lead_somewhere".into(), |_, root| {
             documents::links_lead_somewhere(root)
         }),

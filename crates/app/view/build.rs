@@ -1,4 +1,4 @@
-//! Puts the page into the library that `TWINTAC_PAGE` names, if it names one: whoever has the program has the page then.
+//! Embeds the page that `TWINTAC_PAGE` names into the library, if it names one.
 
 fn main() {
     println!("cargo::rerun-if-env-changed=TWINTAC_PAGE");

@@ -1,4 +1,4 @@
-//! Clocks for a part that holds the bus.
+//! Clock pulses that free a bus whose data line a part holds.
 
 use embedded_hal::delay::DelayNs;
 use esp_hal::Async;
@@ -6,11 +6,12 @@ use esp_hal::delay::Delay;
 use esp_hal::i2c::master::I2c;
 use phystac::recovery::RecoveryError;
 
-/// Half a clock at 100 kHz.
+/// Half a clock period at 100 kHz.
 const HALF_CLOCK_US: u32 = 5;
 
-/// Gives nine clocks and a STOP: whoever holds the data line ends its byte. The peripheral lets both lines be forced, and does not say what level
-/// they have: whether the bus is free is seen in the next round.
+/// Sends nine clock pulses and a STOP, so that a part that holds the data line ends its byte. The
+/// peripheral can force both lines low, but does not report their level: the next round shows
+/// whether the bus is free.
 pub(crate) fn give(bus: &mut I2c<'_, Async>) -> Result<(), RecoveryError> {
     let mut delay = Delay::new();
     for _ in 0..9 {

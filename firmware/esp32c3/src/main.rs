@@ -1,7 +1,9 @@
-//! The firmware of a tactile sensor on an ESP32-C3. Never run on a board.
+//! Firmware of a tactile sensor on an ESP32-C3. It has never run on a board.
 //!
-//! Eight barometers of a kind behind a TCA9548A on I2C0, a serial port over the chip's own USB: `firmware/README.md` has the wiring. When it is
-//! built, `TWINTAC_CHIP` says which chips they are (`MS5837-30BA` if it does not), and `TWINTAC_SCALE` how many counts a Pa is, of a CPS135B.
+//! It reads eight barometers of one kind behind a TCA9548A switch on I2C0, and writes to the chip's
+//! own USB serial port; `firmware/README.md` has the wiring. At build time `TWINTAC_CHIP` names the
+//! kind of chips (default `MS5837-30BA`), and `TWINTAC_SCALE` says how many counts of a CPS135B are
+//! 1 Pa.
 
 #![no_std]
 #![no_main]
@@ -39,14 +41,16 @@ const SCALE: u16 = scale_of(match option_env!("TWINTAC_SCALE") {
 });
 const BUS_HZ: u32 = 400_000;
 
-/// Longer than the longest round: a transaction is given up after 5 ms, a bus is left alone for a second.
+/// Longer than the longest round: a transaction is given up after 5 ms, and a failed bus is left
+/// alone for 1 s.
 const WATCHDOG: Duration = Duration::from_secs(5);
 
 type Line = Buffer<{ longest(N_TAXELS) }>;
 
-/// What rounds wrote and the host has not got yet. If it does not listen, later rounds are left out; their numbers tell.
+/// Lines that the host has not received yet. If the host does not listen, later rounds are dropped;
+/// gaps in their numbers show it.
 static LINES: Channel<CriticalSectionRawMutex, Line, 4> = Channel::new();
-/// What the host sent.
+/// Bytes that the host sent.
 static HEARD: Pipe<CriticalSectionRawMutex, 128> = Pipe::new();
 
 #[esp_rtos::main]
@@ -60,7 +64,8 @@ async fn main(_spawner: Spawner) {
     let open_drain = OutputConfig::default().with_drive_mode(DriveMode::OpenDrain);
     let mut reset = Output::new(board.GPIO10, Level::High, open_drain);
     let sense = async {
-        // A rate that the peripheral can do, and places that are always different: neither fails, and if one did the host would hear nothing.
+        // Neither call fails: the peripheral supports this rate, and eight channels of one switch
+        // are always different. If one failed, the host would receive nothing.
         let config = Config::default().with_frequency(Rate::from_hz(BUS_HZ));
         let (Ok(bus), Ok(mut settings)) = (I2c::new(board.I2C0, config), NodeSettings::<N_TAXELS>::of(CHIP))
         else {
@@ -91,7 +96,7 @@ async fn main(_spawner: Spawner) {
     join3(port::send(sender), port::hear(receiver), sense).await;
 }
 
-/// Whatever it was, the board starts anew; the host counts that.
+/// Restarts the board after any panic. The host counts restarts.
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     esp_hal::system::software_reset()

@@ -15,8 +15,9 @@ bind_interrupts!(struct Irqs {
 
 /// I2C0 on GP4 (SDA) and GP5 (SCL).
 ///
-/// The peripheral starts anew for each transaction, which takes some microseconds: one that was given up in its middle leaves nothing behind,
-/// and between transactions the pins can be lent to who frees the bus.
+/// The peripheral is set up again for each transaction, which takes some microseconds. A
+/// transaction that was given up half-way therefore has no effect on the next one, and between
+/// transactions the pins are free for the recovery of the bus.
 pub(crate) struct Bus {
     pub(crate) i2c: Peri<'static, I2C0>,
     pub(crate) sda: Peri<'static, PIN_4>,
@@ -32,7 +33,7 @@ impl Bus {
         I2c::new_async(self.i2c.reborrow(), scl, sda, Irqs, config)
     }
 
-    /// Gives nine clocks and a STOP.
+    /// Sends nine clock pulses and a STOP.
     pub(crate) fn clock_out(&mut self) -> Result<(), RecoveryError> {
         let mut scl = OutputOpenDrain::new(self.scl.reborrow(), Level::High);
         let mut sda = OutputOpenDrain::new(self.sda.reborrow(), Level::High);

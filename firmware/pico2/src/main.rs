@@ -1,7 +1,8 @@
-//! The firmware of a tactile sensor on a Raspberry Pi Pico 2. Never run on a board.
+//! Firmware of a tactile sensor on a Raspberry Pi Pico 2. It has never run on a board.
 //!
-//! Eight barometers of a kind behind a TCA9548A on I2C0, a serial port over USB: `firmware/README.md` has the wiring. When it is built,
-//! `TWINTAC_CHIP` says which chips they are (`MS5837-30BA` if it does not), and `TWINTAC_SCALE` how many counts a Pa is, of a CPS135B.
+//! It reads eight barometers of one kind behind a TCA9548A switch on I2C0, and writes to a USB
+//! serial port; `firmware/README.md` has the wiring. At build time `TWINTAC_CHIP` names the kind of
+//! chips (default `MS5837-30BA`), and `TWINTAC_SCALE` says how many counts of a CPS135B are 1 Pa.
 
 #![no_std]
 #![no_main]
@@ -36,14 +37,16 @@ const SCALE: u16 = scale_of(match option_env!("TWINTAC_SCALE") {
 });
 const BUS_HZ: u32 = 400_000;
 
-/// Longer than the longest round: a transaction is given up after 5 ms, a bus is left alone for a second.
+/// Longer than the longest round: a transaction is given up after 5 ms, and a failed bus is left
+/// alone for 1 s.
 const WATCHDOG: Duration = Duration::from_secs(5);
 
 type Line = Buffer<{ longest(N_TAXELS) }>;
 
-/// What rounds wrote and the host has not got yet. If it does not listen, later rounds are left out; their numbers tell.
+/// Lines that the host has not received yet. If the host does not listen, later rounds are dropped;
+/// gaps in their numbers show it.
 static LINES: Channel<CriticalSectionRawMutex, Line, 4> = Channel::new();
-/// What the host sent.
+/// Bytes that the host sent.
 static HEARD: Pipe<CriticalSectionRawMutex, 128> = Pipe::new();
 
 #[embassy_executor::main]
@@ -67,7 +70,8 @@ async fn main(_spawner: Spawner) {
     let mut watchdog = Watchdog::new(board.WATCHDOG);
     watchdog.start(WATCHDOG);
     let sense = async {
-        // Eight places behind one switch are always different ones: this does not fail, and if it did the host would hear nothing.
+        // This does not fail, because eight channels of one switch are always different. If it
+        // failed, the host would receive nothing.
         let Ok(mut settings) = NodeSettings::<N_TAXELS>::of(CHIP) else {
             return;
         };
@@ -94,7 +98,7 @@ async fn main(_spawner: Spawner) {
     .await;
 }
 
-/// Whatever it was, the board starts anew; the host counts that.
+/// Restarts the board after any panic. The host counts restarts.
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     cortex_m::peripheral::SCB::sys_reset()

@@ -16,19 +16,19 @@ bind_interrupts!(struct Irqs {
     USBCTRL_IRQ => InterruptHandler<USB>;
 });
 
-/// Bytes of a packet at full speed.
+/// Largest packet at full speed, bytes.
 const PACKET: u16 = 64;
 
 type UsbDriver = Driver<'static, USB>;
 
-/// The parts of the port, each a future to be run.
+/// The parts of the port. Each is a future that has to run.
 pub(crate) struct Port {
     pub(crate) device: UsbDevice<'static, UsbDriver>,
     pub(crate) sender: Sender<'static, UsbDriver>,
     pub(crate) receiver: Receiver<'static, UsbDriver>,
 }
 
-/// The number of this chip, in hexadecimal digits: by it the host tells one board from another.
+/// The number of this chip as hexadecimal digits. The host uses it to distinguish boards.
 fn serial_number() -> &'static str {
     static TEXT: StaticCell<Digits> = StaticCell::new();
     let digits = TEXT.init(Digits {
@@ -60,7 +60,7 @@ impl Port {
         static CAPABILITIES: StaticCell<[u8; 64]> = StaticCell::new();
         static CONTROL: StaticCell<[u8; 64]> = StaticCell::new();
         static STATE: StaticCell<State> = StaticCell::new();
-        // The numbers of pid.codes for tests: whoever sells boards asks for their own.
+        // Numbers of pid.codes for tests. A vendor of boards has to request its own.
         let mut config = Config::new(0x1209, 0x0001);
         config.manufacturer = Some("TwinTac");
         config.product = Some("TwinTac tactile sensor");
@@ -83,11 +83,11 @@ impl Port {
     }
 }
 
-/// Sends what rounds wrote, whenever a host is there.
+/// Sends the lines of all rounds whenever a host is connected.
 pub(crate) async fn send(mut sender: Sender<'static, UsbDriver>) -> ! {
     loop {
         sender.wait_connection().await;
-        LINES.clear(); // what waited for a host is of another time
+        LINES.clear(); // lines that waited for a host are out of date
         while send_one(&mut sender).await.is_ok() {}
     }
 }
@@ -98,13 +98,13 @@ async fn send_one(sender: &mut Sender<'static, UsbDriver>) -> Result<(), Endpoin
     while let Some(packet) = packets.next() {
         sender.write_packet(packet).await?;
         if packet.len() == usize::from(PACKET) && packets.peek().is_none() {
-            sender.write_packet(&[]).await?; // a full packet alone does not end a transfer
+            sender.write_packet(&[]).await?; // a full last packet does not end a transfer; an empty one does
         }
     }
     Ok(())
 }
 
-/// Takes what the host sends.
+/// Receives bytes of the host.
 pub(crate) async fn hear(mut receiver: Receiver<'static, UsbDriver>) -> ! {
     let mut packet = [0; PACKET as usize];
     loop {

@@ -1,1 +1,1 @@
-"""How much silicone a sensor needs, and the sheet that says so."""
+"""The amount of silicone for a sensor, and the casting sheet."""

@@ -15,8 +15,8 @@ from reportlab.platypus import Table, TableStyle
 from casting.recipe import TEST_POUR_G, Recipe
 from checks.files import Made
 
-# Times of Ecoflex 00-30 and 00-31: stirring and curing as the paper has them; pot life and density
-# as its maker is quoted, not verified.
+# Times for Ecoflex 00-30 and 00-31: stirring and curing as in the paper; pot life and density as
+# quotations of the maker give them, not verified.
 STEPS = (
     ("0:00", "Weigh A, then B into the same cup. Stir for 3 min; scrape walls and bottom."),
     ("0:04", "Degas until the foam has fallen: about -90 kPa, let air in twice, 5 to 10 min."),
@@ -53,7 +53,7 @@ def _screws(made: Made) -> str:
 
 
 def write_page(made: Made, recipe: Recipe, picture: Path, path: Path) -> None:
-    """Writes the page."""
+    """Writes the casting sheet as a PDF file."""
     canvas = Canvas(str(path), pagesize=A4, invariant=1)
     canvas.setTitle(f"Casting sheet, {made.geometry.variant}")
     width, height = A4
@@ -100,7 +100,7 @@ def write_page(made: Made, recipe: Recipe, picture: Path, path: Path) -> None:
 def _table(
     canvas: Canvas, rows: list[list[str]], widths: tuple[float, ...], left: float, y: float, bold: list[tuple[int, int]]
 ) -> float:
-    """Draws a table below a height. The height of its lower end."""
+    """Draws a table below a height. Returns the height of its lower end."""
     made = Table(rows, colWidths=widths)
     style: list[tuple[Any, ...]] = [
         ("FONTSIZE", (0, 0), (-1, -1), 9),

@@ -1,1 +1,3 @@
-"""Checks of what make.py wrote: on the files alone, with other means than those that made them."""
+"""Checks of the files that make.py wrote. They use the files alone, and other methods than those
+that made the files.
+"""

@@ -1,10 +1,11 @@
-"""The mould holds the gel: its cavity has the gel's volume, and the gel's file the described form.
+"""Checks that the mould holds the gel: the cavity has the gel's volume, and the gel's file has the
+described form.
 
-Method: a block that is a millimetre larger than the gel on each side but the bottom, less the mould's parts,
-is the cavity and the channels to
-it. What stands above the described top within the fill hole's and vents' circles is integrated, and taken
-off. A wall that is missing, or at
-another place, shows as volume. z = 0 closes the cavity: there the port plate is.
+Method: the mould's parts are subtracted from a block that is a millimetre larger than the gel on
+each side except the bottom. The rest is the cavity with its channels. The volume of the channels
+above the described top, within the circles of fill hole and vents, is integrated and subtracted. A
+wall that is missing or misplaced changes the volume. z = 0 closes the cavity: there is the port
+plate.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from checks.solids import box, solid
 from mechanics.gel import top_height
 
 AROUND = 1.0
-# Relative difference of volumes that is allowed, and distance of the form, mm.
+# Allowed relative difference of volumes, and allowed distance of the form, mm.
 VOLUME, FORM = 5e-3, 0.05
 
 
@@ -49,7 +50,9 @@ def cavity_volume(made: Made) -> float:
 
 
 def form_error(made: Made) -> float:
-    """Largest vertical distance between the gel's file and the described top, at points of its upper faces, mm."""
+    """Largest vertical distance between the gel's file and the described top, mm, at points of the
+    file's upper faces.
+    """
     mesh, gel = made.meshes["gel"], made.geometry.gel
     upper = mesh.face_normals[:, 2] > 0.5
     corners = mesh.triangles[upper]
@@ -59,7 +62,7 @@ def form_error(made: Made) -> float:
 
 
 def check(made: Made) -> list[Row]:
-    """Volumes of the cavity and of the gel's file against the geometry's, and the gel's form."""
+    """Checks the volumes of the cavity and of the gel's file, and the form of the gel."""
     expected = made.geometry.gel.volume_mm3
     rows = []
     for name, volume in (("mould", cavity_volume(made)), ("gel", float(made.meshes["gel"].volume))):

@@ -1,4 +1,4 @@
-"""What stands in a folder that make.py wrote."""
+"""Reads a folder that make.py wrote."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Made:
 
 
 def read(folder: Path) -> Made:
-    """Reads a folder. Raises `GeometryError` where a file is missing or can't be read."""
+    """Reads a folder. Raises `GeometryError` if a file is missing or cannot be read."""
     geometry = load(folder / "geometry.json")
     try:
         figures = json.loads((folder / "mechanics.json").read_text(encoding="utf-8"))
@@ -38,7 +38,7 @@ def read(folder: Path) -> Made:
 
 
 def read_stl(path: Path) -> trimesh.Trimesh:
-    """The triangles of an STL file; corners at the same place are one."""
+    """The triangles of an STL file, with equal corners merged."""
     try:
         loaded = trimesh.load_mesh(path, process=False)
     except (OSError, ValueError) as error:

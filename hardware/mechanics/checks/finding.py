@@ -1,4 +1,4 @@
-"""What checks find."""
+"""Results of checks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Row:
-    """One thing that was checked: where, what, what was found, what is allowed, and whether that holds."""
+    """The result of one check: the check, the checked object, the found value, the allowed values,
+    and whether the check holds.
+    """
 
     check: str
     of: str
@@ -22,7 +24,7 @@ class Row:
 
 
 def table(rows: list[Row]) -> str:
-    """Rows as text in columns; those that do not hold begin with `!`."""
+    """Rows as text in columns; rows that do not hold begin with `!`."""
     cells = [("", "check", "of", "found", "allowed")]
     cells += [("" if row.holds else "!", row.check, row.of, row.found, row.allowed) for row in rows]
     widths = [max(len(line[i]) for line in cells) for i in range(5)]

@@ -1,8 +1,8 @@
-"""Printed indenters have the described form, up to where the shank joins.
+"""Checks that printed indenters have the described form, up to where the shank joins.
 
-Method: points of the file's surface are put into the described signed distance; and points of the described
-surface, found by following its
-gradient from points around, are measured to the file's surface. The larger distance counts.
+Method: the signed distance of the description is evaluated at points of the file's surface. In the
+other direction, points near the described surface are moved onto it along the gradient, and their
+distances from the file's surface are measured. The largest distance counts.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""No two bodies of an assembly share volume. They may touch."""
+"""Checks that no two bodies of an assembly share volume. They may touch."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from checks.files import Made
 from checks.finding import Row
 from checks.solids import board_bodies, screw_body, solid
 
-# Shared volume, mm³, below which faces are said to touch.
+# Shared volume, mm³, below which two bodies only touch.
 TOUCH = 1e-3
-# Gel and cover touch in a curved face, whose triangles are cut on their own for each: they may
-# differ by the STL's tolerance.
+# Gel and cover touch in a curved face, of which each has its own triangles: they may differ by the
+# STL's tolerance.
 CURVED_CONTACT = ("gel", "mould-cover")
 CURVED_DEFLECTION = 0.02
 
 
 def bodies(made: Made, assembly: str) -> dict[str, manifold3d.Manifold]:
-    """All that stands in an assembly: prints, gel, board with its parts, screws with their nuts."""
+    """All bodies of an assembly: prints, gel, board with its parts, screws with their nuts."""
     found = {name: solid(made.meshes[name]) for name in made.used_in(assembly)}
     found |= board_bodies(made)
     screws = list(made.figures["screws"][assembly])
@@ -40,7 +40,7 @@ def shared_volume(a: manifold3d.Manifold, b: manifold3d.Manifold) -> float:
 
 
 def check(made: Made) -> list[Row]:
-    """A row for each assembly, and one for each pair that shares volume."""
+    """A row for each assembly, and one for each pair of bodies that shares volume."""
     rows = []
     for assembly in ("sensor", "casting", "flange", "jaw"):
         pairs = list(combinations(sorted(bodies(made, assembly).items()), 2))
@@ -76,7 +76,7 @@ def check(made: Made) -> list[Row]:
 
 
 def _curved_area(made: Made) -> float:
-    """Area of the gel's top where it is curved, seen from above, mm²."""
+    """Area of the gel's top, seen from above, if the top is curved, mm²; else 0."""
     gel = made.geometry.gel
     is_flat = gel.solid["kind"] == "block" and not gel.solid.get("edge_radius_mm")
     return 0.0 if is_flat else gel.size[0] * gel.size[1]

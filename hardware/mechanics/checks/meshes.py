@@ -1,4 +1,6 @@
-"""Each STL is a closed surface without branches that is turned outward, and fits a printer."""
+"""Checks that each STL file is a closed surface without branches, oriented outward, that fits a
+printer.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +10,19 @@ import trimesh
 from checks.files import Made
 from checks.finding import Row
 
-# The bed of small printers, mm.
+# Size of the bed of small printers, mm.
 LARGEST = 180.0
 
 
 def is_closed(mesh: trimesh.Trimesh) -> bool:
-    """Whether each edge has exactly two triangles, which run along it in opposite directions."""
+    """Whether each edge belongs to exactly two triangles, which use it in opposite directions."""
     directed = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
     forward = {tuple(edge) for edge in directed.tolist()}
     return len(forward) == len(directed) and all((b, a) in forward for a, b in forward)
 
 
 def thinnest_triangle(mesh: trimesh.Trimesh) -> float:
-    """The smallest area, mm²."""
+    """The smallest area of a triangle, mm²."""
     return float(mesh.area_faces.min())
 
 
@@ -41,7 +43,7 @@ def check(made: Made) -> list[Row]:
 
 
 def _levels(made: Made) -> list[Row]:
-    """Parts reach exactly where the geometry says."""
+    """Checks that parts reach exactly the levels of the geometry."""
     board, levels = made.geometry.board, made.figures["levels_mm"]
     rim = made.geometry.shell.height if made.geometry.shell else levels["rim"]
     expected = {

@@ -1,4 +1,4 @@
-"""Rays through triangles, and the nearest point of a surface."""
+"""Intersections of rays with triangles, and distances from a surface."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Surface:
-    """A mesh that is asked for hits and distances."""
+    """A mesh for ray intersections and distances."""
 
     def __init__(self, mesh: trimesh.Trimesh) -> None:
         self.mesh = mesh
@@ -31,7 +31,9 @@ class Surface:
         self._locator.BuildLocator()
 
     def first_hit(self, start: Array, direction: Array, reach: float) -> tuple[float, int] | None:
-        """Distance to the first triangle along a ray, mm, and its number."""
+        """Distance to the first triangle along a ray, mm, and the triangle's index; `None` without
+        a hit.
+        """
         t, cell, sub = vtk.reference(0.0), vtk.reference(0), vtk.reference(0)
         at, parametric = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
         end = start + reach * direction

@@ -1,4 +1,6 @@
-"""Signed distances to the described indenters, mm: the definitions of the crate `shape`, for many points at a time."""
+"""Signed distances to the described indenters, mm: the definitions of the crate `shape`, for many
+points at once.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ Array = npt.NDArray[np.float64]
 
 
 def distance(shape: Mapping[str, Any], points: Array) -> Array:
-    """Signed distances, negative inside; exact outside and near the surface."""
+    """Signed distances, mm, negative inside; exact outside and near the surface."""
     kind = shape["kind"]
     if kind == "sphere":
         radius = shape["radius_mm"]
@@ -50,7 +52,7 @@ def _profile(shape: Mapping[str, Any], kind: str, edge: float, at: Array) -> Arr
 
 
 def _cross(half_length: float, half_width: float, hollow: float, at: Array) -> Array:
-    """Crossed bars along the diagonals, hollow corners rounded."""
+    """Crossed bars along the diagonals, with rounded inner corners."""
     hollow = min(hollow, half_length - half_width)
     c = math.sqrt(0.5)
     folded = np.sort(np.abs(at @ np.array([[c, c], [-c, c]])), axis=1)[:, ::-1]
@@ -62,7 +64,7 @@ def _cross(half_length: float, half_width: float, hollow: float, at: Array) -> A
 
 
 def _convex(corners: list[tuple[float, float]], at: Array) -> Array:
-    """A convex polygon, counterclockwise."""
+    """Signed distance to a convex polygon with counterclockwise corners."""
     lines, nearest = np.full(len(at), -np.inf), np.full(len(at), np.inf)
     for index, start in enumerate(corners):
         a = np.array(start)
@@ -76,5 +78,5 @@ def _convex(corners: list[tuple[float, float]], at: Array) -> Array:
 
 
 def _extruded(profile: Array, level: Array) -> Array:
-    """The common part of an endless profile and a slab."""
+    """Signed distance to the intersection of an endless profile and a slab."""
     return np.where((profile > 0) & (level > 0), np.hypot(profile, level), np.maximum(profile, level))

@@ -1,6 +1,5 @@
-"""Triangles as solids that can be cut with each other.
-
-And the bodies that geometry.json and mechanics.json describe.
+"""Solids from triangles, for Boolean operations, and the bodies that geometry.json and
+mechanics.json describe.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ SEGMENTS = 48
 
 
 def solid(mesh: trimesh.Trimesh) -> manifold3d.Manifold:
-    """A mesh as a solid. Raises `ValueError` if it isn't one."""
+    """A mesh as a solid. Raises `ValueError` if it is not closed and consistent."""
     made = manifold3d.Manifold(
         manifold3d.Mesh(np.asarray(mesh.vertices, dtype=np.float32), np.asarray(mesh.faces, dtype=np.uint32))
     )
@@ -34,12 +33,12 @@ def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> ma
 
 
 def rod(at: list[float], radius: float, z0: float, z1: float, segments: int = SEGMENTS) -> manifold3d.Manifold:
-    """An upright cylinder, inscribed."""
+    """An upright cylinder, as an inscribed prism."""
     return manifold3d.Manifold.cylinder(z1 - z0, radius, radius, segments).translate((at[0], at[1], z0))
 
 
 def board_bodies(made: Made) -> dict[str, manifold3d.Manifold]:
-    """Board, chips, and parts below the board."""
+    """Board, chips, and the parts below the board."""
     board, chip = made.geometry.board, made.geometry.chip
     outline = manifold3d.CrossSection([list(board.outline)], manifold3d.FillRule.NonZero)
     plate = manifold3d.Manifold.extrude(outline, board.thickness).translate((0.0, 0.0, board.bottom_z))

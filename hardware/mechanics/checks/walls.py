@@ -1,10 +1,10 @@
-"""Walls are thick enough to print.
+"""Checks that walls are thick enough to print.
 
-Method: from points spread evenly over the surface (always the same ones), a ray goes inward along the normal.
-Where it leaves through a face that is
-turned away from it by at most 30°, the way is a wall's thickness; else it met a corner or a cone, which is no
-wall. Walls thinner than the points
-are apart, about half a millimetre, can be missed at their narrowest place.
+Method: from points spread evenly over the surface (always the same points), a ray goes inward along
+the normal. If it leaves through a face whose normal differs from the ray by at most 30°, its length
+is the thickness of a wall; else it met a corner or a cone, which does not count. Walls that are
+thinner than the distance of the points, about half a millimetre, can be missed at their narrowest
+location.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from checks.rays import Surface
 
 POINTS = 4000
 OPPOSITE = math.cos(math.radians(30.0))
-# Beginnings of rays lie so far below the surface, mm.
+# Depth of the rays' start points below the surface, mm.
 BELOW = 1e-4
 
 
 def thickness(mesh: trimesh.Trimesh) -> tuple[float, tuple[float, float, float]]:
-    """The thinnest wall that was met, mm, and where."""
+    """The thinnest wall that was found, mm, and its location."""
     random = np.random.default_rng(0)
     points, faces = trimesh.sample.sample_surface(mesh, POINTS, seed=random)
     surface = Surface(mesh)

@@ -1,4 +1,4 @@
-"""What is made of a geometry: each part with its name, where it is used, and how it is printed."""
+"""The parts of a sensor: their names, their assemblies, and how they are printed."""
 
 from __future__ import annotations
 
@@ -23,9 +23,8 @@ from mechanics.parts.shell import shell
 
 @dataclass(frozen=True)
 class Entry:
-    """A part.
-
-    Its file's name, how to make it, the assemblies it stands in, and which face lies on the printer's bed.
+    """A part: the name of its files, the function that makes it, the assemblies that contain it,
+    and the face that lies on the printer's bed.
     """
 
     name: str
@@ -34,7 +33,7 @@ class Entry:
     print_with: str
 
 
-# Assemblies: what is checked against each other and shown together.
+# Assemblies: sets of parts that are checked against each other and shown together.
 SENSOR, CASTING, FLANGE, JAW = "sensor", "casting", "flange", "jaw"
 GEL = "gel"
 
@@ -61,7 +60,7 @@ PARTS = (
 
 
 def entries(layout: Layout) -> list[Entry]:
-    """All that is made of a variant: printed parts, the gel's form for pictures and checks, indenters."""
+    """All parts of a variant: printed parts, the gel's form for pictures and checks, indenters."""
     made = [*PARTS, Entry(GEL, _gel, (SENSOR, CASTING, FLANGE, JAW), "not printed: the form that is cast")]
     for each in layout.geometry.indenters:
         made.append(

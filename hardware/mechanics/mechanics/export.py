@@ -1,4 +1,6 @@
-"""Files, whole or not at all: STEP and STL of a part, JSON. The same part gives the same bytes."""
+"""Writes STEP and STL files of a part, and JSON files. A file is written completely or not at all.
+The same part gives the same bytes.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +14,12 @@ from build123d import Part, export_step
 
 from mechanics.triangles import stl_bytes, triangles
 
-# STEP demands a time; the same one always.
+# STEP requires a time; it is always the same one.
 TIMESTAMP = "1970-01-01T00:00:00"
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Writes under a temporary name beside, and renames."""
+    """Writes under a temporary name in the same folder, and renames the file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.name}.tmp")
     try:
@@ -43,6 +45,6 @@ def write_part(part: Part, name: str, folder: Path) -> list[Path]:
 
 
 def write_json(value: Any, path: Path) -> None:
-    """Writes a JSON file, keys in order."""
+    """Writes a JSON file with sorted keys."""
     text = json.dumps(value, indent=1, sort_keys=True) + "\n"
     write_whole(path, lambda partial: partial.write_text(text, encoding="utf-8"))

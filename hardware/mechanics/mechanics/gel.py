@@ -1,4 +1,4 @@
-"""The gel's form as numbers: heights of its top, as the crates `shape` and `description` define them."""
+"""The gel's form: heights of its top, as the crates `shape` and `description` define them."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ Ends = tuple[float, float]
 
 
 def fall_curvature(ends: Ends, crown_at: float, drop: Ends) -> Ends:
-    """Curvatures of a dome's fall along one axis, 1/mm, towards low and high.
+    """Curvatures of a dome's descent along one axis, 1/mm, towards low and high coordinates.
 
-    0 where the crown stands above the edge.
+    A curvature is 0 if the crown is above the edge.
     """
     reaches = (crown_at - ends[0], ends[1] - crown_at)
     low, high = (fall / reach**2 if reach > 0.0 else 0.0 for fall, reach in zip(drop, reaches, strict=True))
@@ -22,7 +22,7 @@ def fall_curvature(ends: Ends, crown_at: float, drop: Ends) -> Ends:
 
 
 def ends(solid: Mapping[str, Any], name: str) -> Ends:
-    """A field of two numbers."""
+    """A field of two numbers. Raises `GeometryError` for anything else."""
     found = solid.get(name)
     if not isinstance(found, (list, tuple)) or len(found) != 2:
         raise GeometryError(f"gel.solid.{name}: expected two numbers, found {found!r}")
@@ -35,7 +35,7 @@ def edge_radius(gel: Gel) -> float:
 
 
 def top_height(gel: Gel, x: float, y: float) -> float:
-    """Height of the gel's top above a place within its footprint, mm."""
+    """Height of the gel's top at a location within its footprint, mm."""
     solid = gel.solid
     if kind(gel) == "block":
         radius = edge_radius(gel)
@@ -52,13 +52,13 @@ def top_height(gel: Gel, x: float, y: float) -> float:
 
 
 def edge_height(gel: Gel) -> float:
-    """The lowest place of the top's rim, mm: below it all sides are upright."""
+    """Height of the lowest point of the top's rim, mm: below it all sides are upright."""
     corners = [(x, y) for x in (gel.low[0], gel.high[0]) for y in (gel.low[1], gel.high[1])]
     return min(top_height(gel, x, y) for x, y in corners)
 
 
 def kind(gel: Gel) -> str:
-    """Block or dome; anything else is a `GeometryError`."""
+    """The kind of the gel, `block` or `dome`. Raises `GeometryError` for anything else."""
     found = gel.solid.get("kind")
     if found not in ("block", "dome"):
         raise GeometryError(f"gel.solid.kind: only `block` and `dome` have a mould, found {found!r}")

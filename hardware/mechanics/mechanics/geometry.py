@@ -1,4 +1,6 @@
-"""What geometry.json says. z is up; z = 0 is the plane of the ports, which is the gel's flat bottom."""
+"""The content of geometry.json. z is up; z = 0 is the plane of the ports, which is the gel's flat
+bottom.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +16,12 @@ Point = tuple[float, float]
 
 
 class GeometryError(ValueError):
-    """Something in geometry.json can't be built: what, where, and what to do."""
+    """Something in geometry.json cannot be built; the message says what, where, and what to do."""
 
 
 @dataclass(frozen=True)
 class Gel:
-    """The gel: its solid as in the sensor's description, its volume, mm³, and its box, mm."""
+    """The gel: its solid as in the description, its volume, mm³, and its bounding box, mm."""
 
     solid: Solid
     volume_mm3: float
@@ -43,7 +45,7 @@ class Shell:
 
 @dataclass(frozen=True)
 class Taxel:
-    """A place where pressure is felt, mm."""
+    """A taxel: the location of its port, and the port's radius, mm."""
 
     name: str
     at: Point
@@ -62,7 +64,9 @@ class Chip:
 
 @dataclass(frozen=True)
 class Part:
-    """A part on the board's bottom face: centre and full size, mm; the size's last number is the height."""
+    """A part on the board's bottom face: centre and full size, mm; the last number of the size is
+    the height.
+    """
 
     reference: str
     center: Point
@@ -89,7 +93,7 @@ class Board:
 
     @property
     def low(self) -> Point:
-        """Least x and y of the outline, mm."""
+        """Smallest x and y of the outline, mm."""
         return (min(p[0] for p in self.outline), min(p[1] for p in self.outline))
 
     @property
@@ -105,7 +109,7 @@ class Board:
 
 @dataclass(frozen=True)
 class Indenter:
-    """A rigid shape that presses; its origin is where it first touches."""
+    """A rigid shape that presses the gel; its origin is its point of first touch."""
 
     name: str
     shape: Solid
@@ -126,7 +130,7 @@ class Geometry:
 
 
 class _Reader:
-    """Fields of a JSON object, by name, with the place in the error."""
+    """Reads fields of a JSON object; errors name the field."""
 
     def __init__(self, value: Any, place: str) -> None:
         if not isinstance(value, Mapping):
@@ -183,7 +187,7 @@ def _numbers(value: Any, place: str, count: int, least: float) -> tuple[float, .
 
 
 def load(path: Path) -> Geometry:
-    """Reads a geometry.json. Raises `GeometryError`, with the file and the field."""
+    """Reads a geometry.json. Raises `GeometryError`, which names the file and the field."""
     try:
         value = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

@@ -1,6 +1,7 @@
-"""Where everything stands.
+"""The positions of all parts.
 
-Levels, outlines and screws of a variant, from its geometry alone. Every part is drawn where it is mounted.
+Levels, outlines and screws of a variant are computed from its geometry alone. Every part is drawn
+in its mounted position.
 """
 
 from __future__ import annotations
@@ -14,17 +15,18 @@ from mechanics.gel import edge_height
 from mechanics.geometry import Geometry, GeometryError, Point
 from mechanics.screws import M2, M3, M3_SUNK_RADIUS, Screw
 
-# How far a screw's end stands out of its nut.
+# Length by which a screw's end exceeds its nut.
 BEYOND_NUT = 0.3
-# Distance of the two screws that hold the lid on a mount.
+# Distance between the two screws that hold the lid on a mount.
 MOUNT_PITCH = 16.0
-# From the clamping screws' axes to the mould's outer face: hole, groove for a cable tie, and a wall between.
+# Distance from the clamping screws' axes to the mould's outer face: hole, groove for a cable tie,
+# and a wall between them.
 CLAMP_EDGE = 5.0
 
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A rectangle along the axes, mm."""
+    """A rectangle parallel to the axes, mm."""
 
     x0: float
     y0: float
@@ -32,7 +34,7 @@ class Rectangle:
     y1: float
 
     def grown(self, by: float) -> Rectangle:
-        """The rectangle with all sides moved outward."""
+        """The rectangle with all sides moved outward by a distance."""
         return Rectangle(self.x0 - by, self.y0 - by, self.x1 + by, self.y1 + by)
 
     def around(self, other: Rectangle) -> Rectangle:
@@ -41,11 +43,11 @@ class Rectangle:
 
     @property
     def center(self) -> Point:
-        """The middle."""
+        """The centre."""
         return ((self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2)
 
     def distance(self, point: Point) -> float:
-        """Distance of a point outside, mm; 0 inside."""
+        """Distance of a point from the rectangle, mm; 0 inside."""
         return math.hypot(
             max(self.x0 - point[0], 0.0, point[0] - self.x1), max(self.y0 - point[1], 0.0, point[1] - self.y1)
         )
@@ -53,7 +55,9 @@ class Rectangle:
 
 @dataclass(frozen=True)
 class Fastener:
-    """A screw with its nut, upright: where, from which height, how long, where its nut's upper face is."""
+    """An upright screw with its nut: location, height of its seat, length, height of the nut's
+    upper face, mm.
+    """
 
     screw: Screw
     at: Point
@@ -69,7 +73,9 @@ class Fastener:
 
 
 class Layout:
-    """Levels (`_z`), outlines and screws. What can't be built is a `GeometryError`."""
+    """Levels (`_z`), outlines and screws, mm. Raises `GeometryError` for a geometry that cannot be
+    built.
+    """
 
     def __init__(self, geometry: Geometry) -> None:
         self.geometry = geometry
@@ -77,7 +83,8 @@ class Layout:
         self.gel = Rectangle(*geometry.gel.low[:2], *geometry.gel.high[:2])
         self.gel_top_z = geometry.gel.high[2]
         self.chip_holes = tuple(self._chip_hole(taxel.at) for taxel in geometry.taxels)
-        # Chips may stand nearer to the board's edge than a wall is thick: there the port plate is wider than the board.
+        # Chips may be nearer to the board's edge than the thickness of a wall: the port plate is
+        # wider than the board there.
         self.plate_patches = tuple(hole.grown(fits.MIN_WALL) for hole in self.chip_holes)
         self.board_box = Rectangle(*self.board.low, *self.board.high)
         for patch in self.plate_patches:
@@ -98,7 +105,7 @@ class Layout:
 
     @cached_property
     def corner(self) -> float:
-        """Rounding of the outer corners: as round as the board's corners leave room for, at least the wall."""
+        """Radius of the outer corners: as large as the board's corners allow, at least the wall."""
         needed = fits.FIT + self.wall
         corners = [
             *self.board.outline,
@@ -130,21 +137,28 @@ class Layout:
 
     @cached_property
     def sensor_screws(self) -> tuple[Fastener, ...]:
-        """Shell, port plate, board and lid: from above, with nuts in the lid."""
+        """The screws of shell, port plate, board and lid: inserted from above, with nuts in the
+        lid.
+        """
         seat = self.rim_z - min(M2.head_height, self.rim_z - fits.MIN_WALL)
-        # The nut lies wholly in the lid, at most half a millimetre below its upper face.
+        # The nut is completely inside the lid, at most half a millimetre below the lid's upper
+        # face.
         length = M2.length(seat - self.parts_z + M2.nut_height + BEYOND_NUT + 0.5, 25)
         nut = seat - length + BEYOND_NUT + M2.nut_height
         return tuple(Fastener(M2, hole, seat, length, nut) for hole in self.board.holes)
 
     @cached_property
     def lid_z(self) -> float:
-        """The lid's lower face: of the usual thickness, or as thick as the screws are long."""
+        """Height of the lid's lower face: the lid has the usual thickness, or reaches to the ends
+        of the screws.
+        """
         return min(self.parts_z - fits.PLATE, self.sensor_screws[0].end_z)
 
     @cached_property
     def mount_points(self) -> tuple[Point, Point]:
-        """Where two countersunk M3 screws go from the lid's inside into a mount."""
+        """Locations of the two countersunk M3 screws that go from the inside of the lid into a
+        mount.
+        """
         x, y = self.outer.center
         points = ((x - MOUNT_PITCH / 2, y), (x + MOUNT_PITCH / 2, y))
         for point in points:
@@ -155,16 +169,18 @@ class Layout:
         return points
 
     def mount_screws(self, thickness: float, floor: float) -> tuple[Fastener, ...]:
-        """Lid and a mount as thick as told below the lid, in which so much holds the nut at least."""
+        """The screws of the lid and a mount of a given thickness; at least `floor` of the mount's
+        thickness holds the nut.
+        """
         length = M3.length(fits.PLATE + floor + M3.nut_height, fits.PLATE + thickness)
         nut = min(self.sunk_z - length + M3.nut_height, self.lid_z - floor)
         return tuple(Fastener(M3, at, self.sunk_z, length, nut, True) for at in self.mount_points)
 
     @cached_property
     def sunk_z(self) -> float:
-        """The upper face of the mount's countersunk heads.
+        """Height of the upper face of the mount's countersunk heads.
 
-        As far above the lid's lower face whatever the lid's thickness.
+        Its distance from the lid's lower face does not depend on the lid's thickness.
         """
         return self.lid_z + fits.PLATE
 
@@ -172,12 +188,16 @@ class Layout:
 
     @cached_property
     def parting_z(self) -> float:
-        """Up to here the gel's sides are upright: halves of the mould below, its cover above."""
+        """Height up to which the gel's sides are upright: the halves of the mould are below, the
+        cover above.
+        """
         return edge_height(self.geometry.gel)
 
     @cached_property
     def clamp_y(self) -> tuple[float, float]:
-        """The lines of the clamping screws: so far out that the traps of their nuts stay beside the board's bed."""
+        """Lines of the clamping screws: far enough outward that the traps of their nuts are beside
+        the board's bed.
+        """
         trap = (M3.nut_flats + fits.FIT) / math.sqrt(3.0)
         beside = self.gel.grown(fits.MOULD_WALL).around(self.pocket.grown(fits.MIN_WALL)).grown(trap)
         return (beside.y0, beside.y1)
@@ -191,17 +211,17 @@ class Layout:
 
     @cached_property
     def cover_z(self) -> float:
-        """The cover's upper face."""
+        """Height of the cover's upper face."""
         return self.gel_top_z + 4.0
 
     @cached_property
     def jig_z(self) -> float:
-        """The jig's lower face."""
+        """Height of the jig's lower face."""
         return self.parts_z - fits.PLATE
 
     @cached_property
     def clamp_screws(self) -> tuple[Fastener, ...]:
-        """Cover, halves and jig."""
+        """The screws of cover, halves and jig."""
         x0, x1 = self.gel.x0 + 6.0, self.gel.x1 - 6.0
         length = max(length for length in M3.lengths if length <= self.cover_z - self.jig_z)
         nut = self.cover_z - length + BEYOND_NUT + M3.nut_height
@@ -209,7 +229,9 @@ class Layout:
 
     @cached_property
     def casting_screws(self) -> tuple[Fastener, ...]:
-        """Halves of the mould, port plate, board and jig: in the holes that later hold the shell."""
+        """The screws of the mould's halves, port plate, board and jig: in the holes that later hold
+        the shell.
+        """
         seat = min(fits.PLATE, self.parting_z)
         length = max(length for length in M2.lengths if length <= seat - self.jig_z)
         nut = seat - length + BEYOND_NUT + M2.nut_height
@@ -219,14 +241,16 @@ class Layout:
 
     @cached_property
     def fill_at(self) -> Point:
-        """The fill hole: on the gel's middle line, near the end where it is farthest from any taxel."""
+        """Location of the fill hole: on the gel's middle line, near the end that is farther from
+        any taxel.
+        """
         y = self.gel.center[1]
         ends = [(self.gel.x0 + fits.FILL_INSET, y), (self.gel.x1 - fits.FILL_INSET, y)]
         return max(ends, key=lambda end: min(math.dist(end, taxel.at) for taxel in self.geometry.taxels))
 
     @cached_property
     def vents_at(self) -> tuple[Point, ...]:
-        """Vents: at the corners, and where a dome is highest."""
+        """Locations of the vents: at the corners, and at the highest point of a dome."""
         corners = self.gel.grown(-fits.VENT_INSET)
         vents = [(x, y) for y in (corners.y0, corners.y1) for x in (corners.x0, corners.x1)]
         solid = self.geometry.gel.solid

@@ -1,4 +1,6 @@
-"""mechanics.json: what make.py made, with the figures that checks, pictures, guide and casting sheet need."""
+"""The content of mechanics.json: the parts that make.py made, with the numbers for checks,
+pictures, guide and casting sheet.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,7 @@ def _screws(screws: tuple[Fastener, ...]) -> list[dict[str, Any]]:
 
 
 def manifest(layout: Layout, made: list[Entry]) -> dict[str, Any]:
-    """The figures, mm and mm³."""
+    """The numbers, mm and mm³."""
     geometry = layout.geometry
     channels = [{"at_mm": list(layout.fill_at), "radius_mm": fits.FILL_RADIUS}]
     channels += [{"at_mm": list(at), "radius_mm": fits.VENT_RADIUS} for at in layout.vents_at]

@@ -9,7 +9,9 @@ from mechanics.geometry import GeometryError
 
 @dataclass(frozen=True)
 class Screw:
-    """A thread's sizes as drawn: clearance hole, largest head, nut across flats and height."""
+    """Sizes of a thread, mm: clearance hole, largest head, width across flats and height of the
+    nut, available lengths.
+    """
 
     name: str
     hole_radius: float
@@ -20,7 +22,9 @@ class Screw:
     lengths: tuple[float, ...]
 
     def length(self, least: float, most: float) -> float:
-        """The shortest length on sale from `least`, which goes through the nut, to `most`, before an obstacle."""
+        """The shortest available length from `least`, which passes through the nut, to `most`,
+        where an obstacle begins.
+        """
         for length in self.lengths:
             if least <= length <= most:
                 return length
@@ -34,5 +38,6 @@ M2 = Screw("M2", 1.1, 2.0, 1.6, 4.0, 1.6, (6, 8, 10, 12, 14, 16, 18, 20, 25))
 M3 = Screw("M3", 1.7, 2.75, 3.0, 5.5, 2.4, (6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 60))
 M6 = Screw("M6", 3.3, 5.0, 6.0, 10.0, 5.2, (12, 16, 20, 25))
 
-# Countersunk M3: the head's largest radius and its height (ISO 10642: 6.72 mm across the sharp cone, 90°).
+# Countersunk M3: largest radius of the head and its height (ISO 10642: 6.72 mm across the sharp
+# cone, 90°).
 M3_SUNK_RADIUS, M3_SUNK_HEIGHT = 3.4, 1.7

@@ -1,4 +1,4 @@
-"""Few solids that all parts are made of, on top of build123d."""
+"""The basic solids of all parts, made with build123d."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from mechanics import fits
 from mechanics.geometry import Point
 from mechanics.layout import Fastener, Layout, Rectangle
 
-# Holes are cut from here to here where they go through everything.
+# Half length of cuts that go through everything.
 FAR = 200.0
 
 
@@ -41,7 +41,7 @@ def box(r: Rectangle, z0: float, z1: float) -> Part:
 def rounded_box(
     r: Rectangle, radius: float, z0: float, z1: float, chamfers: tuple[bool, bool] = (False, False)
 ) -> Part:
-    """A block with round upright edges, and chamfers at its bottom or top as told."""
+    """A block with round upright edges, and chamfers at the bottom or the top on request."""
     x, y = r.center
     solid = extrude(Plane.XY.offset(z0) * Pos(x, y) * RectangleRounded(r.x1 - r.x0, r.y1 - r.y0, radius), z1 - z0)
     for is_wanted, which in zip(chamfers, (0, -1), strict=True):
@@ -51,13 +51,13 @@ def rounded_box(
 
 
 def prism(corners: tuple[Point, ...] | list[Point], z0: float, z1: float) -> Part:
-    """A polygon, extruded."""
+    """An extruded polygon."""
     face = make_face(Wire.make_polygon([(x, y, z0) for x, y in corners], close=True))
     return extrude(face, z1 - z0, dir=(0, 0, 1))
 
 
 def plate_footprint(layout: Layout, by: float, z0: float, z1: float) -> Part:
-    """Board and port plate seen from above, grown by a clearance, extruded."""
+    """The outline of board and port plate, grown by a clearance and extruded."""
     face = make_face(Wire.make_polygon([(x, y, 0.0) for x, y in layout.board.outline], close=True))
     for patch in layout.plate_patches:
         x, y = patch.center
@@ -73,18 +73,20 @@ def rod(at: Point, radius: float, z0: float, z1: float) -> Part:
 
 
 def cone(at: Point, radius0: float, radius1: float, z0: float, z1: float) -> Part:
-    """An upright cone, of radii at its lower and upper end."""
+    """An upright cone with radii at its lower and its upper end."""
     return Pos(at[0], at[1], (z0 + z1) / 2) * Cone(radius0, radius1, z1 - z0)
 
 
 def hexagon(at: Point, flats: float, z0: float, z1: float) -> Part:
-    """An upright hexagon with flats towards ±x: walls at the ends of parts stay thick."""
+    """An upright hexagonal prism with flats towards ±x, so that walls at the ends of parts stay
+    thick.
+    """
     profile = Pos(at[0], at[1]) * Rot(0, 0, 30) * RegularPolygon(flats / math.sqrt(3.0), 6)
     return extrude(Plane.XY.offset(z0) * profile, z1 - z0)
 
 
 def nut_trap(fastener: Fastener, bottom_z: float) -> Part:
-    """Room for a nut, open downward."""
+    """A cavity for a nut, open downward."""
     return hexagon(fastener.at, fastener.screw.nut_flats + fits.FIT, bottom_z - 1.0, fastener.nut_top_z)
 
 

@@ -1,6 +1,6 @@
-"""A solid's surface as triangles without gaps.
+"""The surface of a solid as triangles without gaps.
 
-Corners at the same place are one, triangles without area are left out.
+Equal corners are merged, and triangles without area are left out.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from mechanics import fits
 
 Corners = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
-# Corners that are nearer than this are one, mm: a kernel's faces agree at their edges to about 1e-7 mm.
+# Corners nearer to each other than this are merged, mm: the faces of the CAD kernel agree at their
+# edges to about 1e-7 mm.
 SAME = 1e-4
 
 

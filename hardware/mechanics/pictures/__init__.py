@@ -1,1 +1,1 @@
-"""Pictures of what make.py wrote, for the guide: drawn without a display."""
+"""Pictures of the parts, for the guide. They are drawn without a display."""

@@ -1,4 +1,4 @@
-"""What pictures are made of: the prints, the board with its parts, screws; cut open where wanted."""
+"""The bodies in pictures: prints, the board with its parts, screws; with cuts on request."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Body:
-    """A solid with the colour's name."""
+    """A solid with the name of its colour."""
 
     shape: manifold3d.Manifold
     kind: str
 
     def moved(self, by: Vector) -> Body:
-        """The body elsewhere."""
+        """The body, shifted."""
         return Body(self.shape.translate(by), self.kind)
 
     def cut(self, normal: Vector, offset: float) -> Body:
-        """The half on the side that the normal points to."""
+        """The half on the side to which the normal points."""
         return Body(self.shape.trim_by_plane(normal, offset), self.kind)
 
 
@@ -44,7 +44,7 @@ def part(made: Made, name: str) -> list[Body]:
 
 
 def board(made: Made) -> list[Body]:
-    """The board with chips, their ports and the parts below."""
+    """The board with chips, their ports, and the parts below."""
     kinds = {"board": "board", "chip": "chip", "part": "part"}
     bodies = [Body(shape, kinds[name.split()[0]]) for name, shape in board_bodies(made).items()]
     for taxel in made.geometry.taxels:
@@ -53,7 +53,9 @@ def board(made: Made) -> list[Body]:
 
 
 def potting(made: Made) -> list[Body]:
-    """Silicone below the ports' plane: what the port plate leaves free between board and gel."""
+    """The silicone below the plane of the ports, in the space that the port plate leaves between
+    board and gel.
+    """
     chip_holes, anchors = made.meshes["port-plate"], made.figures["anchors_at_mm"]
     low = made.geometry.board.top_z
     x, y = (side / 2 + 0.3 for side in made.geometry.chip.body)
@@ -75,12 +77,12 @@ def screws(made: Made, assembly: str) -> list[Body]:
 
 
 def moved(bodies: list[Body], by: Vector) -> list[Body]:
-    """Bodies elsewhere."""
+    """Shifted bodies."""
     return [body.moved(by) for body in bodies]
 
 
 def cut(bodies: list[Body], normal: Vector, offset: float) -> list[Body]:
-    """What is left of bodies on one side of a plane."""
+    """The parts of bodies on one side of a plane."""
     halves = [body.cut(normal, offset) for body in bodies]
     return [body for body in halves if body.shape.volume() > 1e-9]
 

@@ -1,4 +1,4 @@
-"""Texts beside a picture, each with a line to what it names."""
+"""Labels beside a picture, each with a line to its object."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ INK, LINE = (28, 36, 48), (110, 118, 130)
 
 
 def draw_labels(picture: Image.Image, labels: list[Label], points: list[tuple[float, float]]) -> Image.Image:
-    """The picture with a margin at each side that has labels; these stand in the order of their points' heights."""
+    """The picture with a margin on each side that has labels. Labels have the order of the heights
+    of their points.
+    """
     left = MARGIN if any(label.side == "left" for label in labels) else 0
     right = MARGIN if any(label.side == "right" for label in labels) else 0
     wide = Image.new("RGB", (picture.width + left + right, picture.height), "white")
@@ -46,7 +48,7 @@ def draw_labels(picture: Image.Image, labels: list[Label], points: list[tuple[fl
 
 
 def _spread(heights: list[float], height: int) -> list[float]:
-    """Heights in order, moved apart until lines of text have room."""
+    """Heights in the same order, moved apart so that the lines of text do not overlap."""
     spread: list[float] = []
     for at in heights:
         spread.append(max(at, spread[-1] + LINE_HEIGHT if spread else LINE_HEIGHT / 2))

@@ -1,4 +1,6 @@
-"""A scene of solids, drawn to a PNG file: light, colours, edges, labels with leader lines."""
+"""A scene of solids that is drawn to a PNG file, with light, colours, edges, and labels with leader
+lines.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ from PIL import Image
 
 from mechanics.export import write_whole
 
-# Colours of what things are made of.
+# Colours of the bodies.
 COLORS = {
     "board": "#1f6f4a",
     "chip": "#b9bec6",
@@ -34,13 +36,15 @@ COLORS = {
     "screw": "#9aa0a8",
 }
 SIZE = (1200, 900)
-# PNG files of the guide are at most so large, bytes.
+# Largest size of PNG files of the guide, bytes.
 LARGEST = 150_000
 
 
 @dataclass(frozen=True)
 class Label:
-    """A text at the picture's left or right with a line to a point, or just below the point."""
+    """A label at the left or right of a picture with a line to a point, or a label directly below
+    the point.
+    """
 
     text: str
     at: tuple[float, float, float]
@@ -56,7 +60,7 @@ class Scene:
     _solids: list[tuple[trimesh.Trimesh, str, float]] = field(default_factory=list)
 
     def add(self, mesh: trimesh.Trimesh, kind: str, opacity: float = 1.0) -> None:
-        """Adds a solid, coloured by what it is."""
+        """Adds a solid with the colour of its kind."""
         self._solids.append((mesh, COLORS[kind], opacity))
 
     def draw(self, path: Path) -> None:
@@ -88,7 +92,7 @@ class Scene:
         write_png(_cropped(picture), path)
 
     def _aim(self, plotter: pv.Plotter) -> None:
-        """A parallel view in which the solids fill the picture."""
+        """Sets a parallel view in which the solids fill the picture."""
         toward, side, up = _axes(np.array(self.direction))
         points = np.concatenate([mesh.vertices for mesh, _, _ in self._solids])
         across, upward = points @ side, points @ up
@@ -101,7 +105,7 @@ class Scene:
 
 
 def _axes(direction: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
-    """Unit vectors towards the viewer, to the right and up in the picture."""
+    """Unit vectors towards the viewer, to the right in the picture, and up in the picture."""
     toward = direction / np.linalg.norm(direction)
     side = np.cross([0.0, 0.0, 1.0], toward)
     side = side / np.linalg.norm(side)
@@ -109,9 +113,11 @@ def _axes(direction: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], 
 
 
 def _lights(direction: npt.NDArray[np.float64]) -> list[pv.Light]:
-    """A key light over the viewer's left shoulder, a weak one from the right, one from above in the picture."""
+    """A main light over the left shoulder of the viewer, a weak one from the right, and one from
+    above in the picture.
+    """
     toward, side, up = _axes(direction)
-    if direction[2] < 0.0:  # from below: what faces down is shown, and has to be lit
+    if direction[2] < 0.0:  # view from below: lights the faces that are directed downward
         up = -up
     places = ((toward - 0.7 * side + 0.6 * up, 0.75), (toward + 1.2 * side, 0.3), (0.3 * toward + up, 0.25))
     return [
@@ -121,7 +127,7 @@ def _lights(direction: npt.NDArray[np.float64]) -> list[pv.Light]:
 
 
 def _on_screen(plotter: pv.Plotter, at: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a point stands in the picture, as parts of its width and height from the upper left."""
+    """The position of a point in the picture: fractions of width and height from the upper left."""
     renderer = plotter.renderer
     renderer.SetWorldPoint(*at, 1.0)
     renderer.WorldToDisplay()
@@ -130,7 +136,7 @@ def _on_screen(plotter: pv.Plotter, at: tuple[float, float, float]) -> tuple[flo
 
 
 def _cropped(picture: Image.Image) -> Image.Image:
-    """Without white margins, but for a narrow one."""
+    """The picture without its white margins, except for a narrow one."""
     dark = np.asarray(picture.convert("L")) < 252
     rows, columns = np.flatnonzero(dark.any(axis=1)), np.flatnonzero(dark.any(axis=0))
     margin = 12
@@ -139,7 +145,7 @@ def _cropped(picture: Image.Image) -> Image.Image:
 
 
 def write_png(picture: Image.Image, path: Path) -> None:
-    """Writes a PNG file of at most `LARGEST` bytes: with fewer colours, where it has to be."""
+    """Writes a PNG file of at most `LARGEST` bytes, with fewer colours if necessary."""
     for colors in (256, 128, 64, 32):
         reduced = picture.quantize(colors, dither=Image.Dither.NONE)
         data = io.BytesIO()

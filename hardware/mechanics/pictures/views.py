@@ -11,7 +11,7 @@ from pictures.scene import Label, Scene
 
 View = Callable[[Made, Path], None]
 FROM_ABOVE = (0.7, -1.4, 1.3)
-# The mould moves apart so far, mm, in the picture of demoulding.
+# Distance by which the mould is moved apart in the picture of demoulding, mm.
 APART = 16.0
 
 
@@ -79,7 +79,7 @@ def section(made: Made, path: Path) -> None:
 
 
 def assembled(made: Made, path: Path) -> None:
-    """The sensor as it is used."""
+    """The assembled sensor."""
     scene = Scene(FROM_ABOVE)
     show(scene, _sensor(made))
     scene.draw(path)
@@ -178,14 +178,14 @@ def shell_on(made: Made, path: Path) -> None:
 
 
 def on_flange(made: Made, path: Path) -> None:
-    """Step 7: on a robot's flange."""
+    """Step 7: the sensor on a robot's flange."""
     scene = Scene((1.0, -1.5, 1.1))
     show(scene, [*_sensor(made), *part(made, "flange-plate"), *screws(made, "flange")])
     scene.draw(path)
 
 
 def on_jaw(made: Made, path: Path) -> None:
-    """Step 7, the other way: on the mount for a gripper's jaw."""
+    """Step 7, alternative: the sensor on the mount for a gripper's jaw."""
     scene = Scene((1.0, -1.5, 0.6))
     show(scene, [*_sensor(made), *part(made, "jaw-mount"), *screws(made, "jaw")])
     scene.draw(path)
@@ -225,7 +225,7 @@ def prints(made: Made, path: Path) -> None:
 
 
 def single(name: str) -> View:
-    """One print, as it is used."""
+    """A function that draws one print in its mounted orientation."""
 
     def draw(made: Made, path: Path) -> None:
         is_under = name in ("lid", "mould-cover", "flange-plate", "jaw-mount")

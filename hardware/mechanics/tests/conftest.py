@@ -1,4 +1,6 @@
-"""What all tests share: the folder of the modules, and the mechanics of two variants, made once."""
+"""Fixtures that all tests use: the import path of the modules, and the mechanics of two variants,
+made once.
+"""
 
 from __future__ import annotations
 
@@ -29,17 +31,17 @@ def _made(variant: str, folder: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def block_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What make.py makes of a block of gel."""
+    """The folder that make.py makes for a block of gel."""
     return _made("phystac-ms5837", tmp_path_factory.mktemp("block"))
 
 
 @pytest.fixture(scope="session")
 def block(block_folder: Path) -> files.Made:
-    """The same, read."""
+    """The same folder, read."""
     return files.read(block_folder)
 
 
 @pytest.fixture(scope="session")
 def dome(tmp_path_factory: pytest.TempPathFactory) -> files.Made:
-    """What make.py makes of a dome of gel, read."""
+    """The folder that make.py makes for a dome of gel, read."""
     return files.read(_made("fingertip", tmp_path_factory.mktemp("dome")))

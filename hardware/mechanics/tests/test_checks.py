@@ -1,6 +1,6 @@
-"""Each check finds what it is for.
+"""Tests that each check finds its defect.
 
-Files are broken on purpose, and the check has to say so, and nothing else before.
+Files are damaged on purpose. The check has to report the damage, and nothing before the damage.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ Check = Callable[[Made], list[Row]]
 
 
 def broken(made: Made, name: str, mesh: trimesh.Trimesh) -> Made:
-    """The same with another mesh for a part."""
+    """The same files, with another mesh for a part."""
     return replace(made, meshes={**made.meshes, name: mesh})
 
 
 def moved(made: Made, name: str, by: tuple[float, float, float]) -> Made:
-    """The same with a part moved."""
+    """The same files, with a part shifted."""
     mesh = made.meshes[name].copy()
     mesh.apply_translation(by)
     return broken(made, name, mesh)
 
 
 def scaled(made: Made, name: str, by: tuple[float, float, float]) -> Made:
-    """The same with a part scaled."""
+    """The same files, with a part scaled."""
     mesh = made.meshes[name].copy()
     mesh.apply_scale(by)
     return broken(made, name, mesh)
 
 
 def findings(check: Check, made: Made) -> list[str]:
-    """The checks that do not hold, with what they are of."""
+    """The checks that fail, with their objects."""
     return [f"{row.check}: {row.of}" for row in check(made) if not row.holds]
 
 
@@ -99,7 +99,7 @@ def test_a_mould_that_holds_more_is_found(block: Made, dome: Made) -> None:
 
 
 def test_a_gel_of_another_form_is_found(dome: Made) -> None:
-    # Turned about z the volume stays the same: the form alone tells.
+    # Rotation about z keeps the volume: only the form differs.
     mesh = dome.meshes["gel"].copy()
     mesh.apply_translation([-5.1, 0.0, 0.0])
     mesh.apply_transform(trimesh.transformations.rotation_matrix(np.pi, [0, 0, 1]))
@@ -146,7 +146,9 @@ def test_an_indenter_of_another_form_is_found(name: str, block: Made) -> None:
 
 
 def test_an_indenter_with_a_bump_missing_is_found(block: Made) -> None:
-    """Where the file has less than is described, its own points tell nothing: the described ones do."""
+    """Where the file has less than the description, the points of the file show no difference, but
+    the points of the description do.
+    """
     whole = block.meshes["indenter-ring"]
     disc = trimesh.creation.cylinder(2.0, 30.0)
     disc.apply_translation([0.0, 0.0, 15.0])

@@ -1,4 +1,4 @@
-"""The guide in docs/build says what the drawings say."""
+"""Tests that the guide in docs/build agrees with the drawings."""
 
 from __future__ import annotations
 

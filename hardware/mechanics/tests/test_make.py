@@ -1,4 +1,4 @@
-"""What make.py makes and refuses."""
+"""Tests of the results and errors of make.py."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from mechanics.triangles import triangles
 
 
 def written(value: Any, folder: Path) -> Path:
-    """A geometry.json of a value."""
+    """A geometry.json with a value."""
     path = folder / "geometry.json"
     path.write_text(json.dumps(value))
     return path
@@ -106,7 +106,9 @@ def _gel(solid: dict[str, Any], low: tuple[float, float], high: tuple[float, flo
 
 
 def test_a_dome_is_the_described_one() -> None:
-    """An asymmetric one, the crown at an edge: volume and heights by the formula of the description."""
+    """An asymmetric dome with its crown at an edge: volume and heights agree with the formula of
+    the description.
+    """
     solid = {"kind": "dome", "x_mm": [-4.0, 8.0], "y_mm": [-3.0, 5.0], "crown_at_mm": [-4.0, 1.0], "crown_mm": 9.0}
     solid |= {"drop_x_mm": [0.0, 3.0], "drop_y_mm": [2.0, 1.0]}
     of = _gel(solid, (-4.0, -3.0), (8.0, 5.0), 9.0)

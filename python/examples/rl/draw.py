@@ -1,4 +1,7 @@
-"""Draws one environment of each task while its script runs: `python python/examples/rl/draw.py docs/tasks.png`."""
+"""Draws an environment of each task while its scripted baseline acts.
+
+python python/examples/rl/draw.py docs/tasks.png
+"""
 
 import sys
 

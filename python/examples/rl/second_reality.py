@@ -1,13 +1,18 @@
-"""Judges policies that hold forces on the emulated bench: another gel, solved by finite elements, and a sensor whose imperfections no training has seen.
+"""Evaluates policies that hold forces on the emulated bench: with another gel, computed by finite
+elements, and a sensor whose variation was in no training.
 
 twintac record --lab default --at-once --protocol protocols/hold-force.toml --out runs/hold-force
 python python/examples/rl/train.py --task HoldForce --seed 1 --out runs/rl
 python python/examples/rl/train.py --task HoldForce --seed 1 --perfect --out runs/rl
-python python/examples/rl/second_reality.py --recording runs/hold-force/recordings/presses.parquet --policies runs/rl --seeds 1
+python python/examples/rl/second_reality.py --policies runs/rl --seeds 1 \\
+    --recording runs/hold-force/recordings/presses.parquet
 
-Each recorded press gives force and readings over depth, of its slow way in; a spring in series shares the way as in the task. Noise and steps of readings are those of the bench. As on any
-bench, readings are first divided by the sensor's common gain, in kPa for each newton, which one press of the ball with a force sensor tells. Every policy is judged twice: on the bench's
-sensor as it is, and on one of which a taxel is dead, another in each episode.
+Each recorded press gives force and readings over depth, from its slow approach; as in the task, a
+spring in series takes a part of the travel. Noise and resolution of readings are those of the
+emulated bench. As on any test setup, readings are first divided by the sensor's common gain, in kPa
+for each newton, which is measured with one press of the ball and a force sensor. Every policy is
+evaluated twice: on the emulated sensor as it is, and on one with a dead taxel, another one in each
+episode.
 """
 
 import argparse
@@ -31,7 +36,7 @@ EPISODES_A_PRESS = 32
 
 
 class Bench:
-    """What the bench answers over depth, at the places of a recording."""
+    """The response of the emulated bench over depth, at the locations of a recording."""
 
     def __init__(self, recording: Recording) -> None:
         columns = recording.columns()
@@ -47,7 +52,7 @@ class Bench:
                 [np.interp(DEPTHS_MM, depth_mm[inwards], values[inwards]) for values in (force_n, *readings.T)]
             )
         table: Double = np.array(tables)
-        table -= table[:, :, :1]  # nothing is felt at first touch
+        table -= table[:, :, :1]  # force and readings are 0 at first touch
         self.force_n: Double = np.maximum.accumulate(np.maximum(table[:, 0], 0.0), axis=1)
         self.readings_kpa: Double = table[:, 1:]
         first = int(np.flatnonzero(press == 0)[0])
@@ -55,7 +60,9 @@ class Bench:
         self.gain = self._gain(place)
 
     def _gain(self, place_mm: tuple[float, float]) -> float:
-        """What the sensor reads for each newton, over what perfect sensors read, under the ball of the first press."""
+        """The ratio of this sensor's readings for each newton to those of perfect sensors, under
+        the ball of the first press.
+        """
         reader, ball = FastGel.phystac().reader(), Body(Shape.sphere(12.5))
         fast = []
         for depth_mm in np.arange(0.5, 3.5, 0.25):
@@ -66,7 +73,9 @@ class Bench:
         return float(np.median(here) / np.median(fast))
 
     def returns(self, policy: Policy, has_dead_taxel: bool, seed: int) -> Double:
-        """Sums of rewards, N, of episodes of every press: the same springs, forces, noise and dead taxels for every policy."""
+        """Returns (sums of rewards, N) of episodes of every press, with the same springs, forces,
+        noise and dead taxels for every policy.
+        """
         random = np.random.default_rng(seed)
         press = np.repeat(np.arange(len(self.force_n)), EPISODES_A_PRESS)
         n, every = len(press), np.arange(len(press))
@@ -99,7 +108,7 @@ class Bench:
 
 
 def main() -> None:
-    """Judges the script and all trained policies."""
+    """Evaluates the scripted baseline and all trained policies."""
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--recording", type=Path, required=True)
     arguments.add_argument("--policies", type=Path, required=True, help="folder that train.py wrote")
@@ -115,7 +124,7 @@ def main() -> None:
         policies[f"perfect sensors, seed {seed}"] = trained_policy(*load(given.policies, "HoldForce-perfect", seed))
     rows: list[list[str]] = []
     for sensor, has_dead_taxel in (("as it is", False), ("one taxel dead", True)):
-        # Episodes of one press have the same place and shape: presses are what is independent.
+        # Episodes of one press have the same location and shape, so only presses are independent.
         errors_n = {
             name: -bench.returns(policy, has_dead_taxel, seed=1).reshape(-1, EPISODES_A_PRESS).mean(axis=1) / N_STEPS
             for name, policy in policies.items()

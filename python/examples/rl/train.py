@@ -1,9 +1,11 @@
-"""Trains a policy with Stable-Baselines3, and compares it with a script and with chance.
+"""Trains a policy with Stable-Baselines3, and compares it with the scripted and the random
+baseline.
 
 pip install './python[rl]' stable-baselines3 matplotlib
 python python/examples/rl/train.py --task HoldForce --seed 1 --out runs/rl
 
-It writes `HoldForce-1.csv` (the learning curve), `HoldForce-1.png`, `HoldForce-1.zip` (the policy) and `HoldForce-1.pkl` (what it scales observations by) into a folder.
+It writes `HoldForce-1.csv` (the learning curve), `HoldForce-1.png`, `HoldForce-1.zip` (the policy)
+and `HoldForce-1.pkl` (the normalization of observations) into the folder.
 """
 
 import argparse
@@ -35,7 +37,9 @@ SETTINGS: dict[str, dict[str, Any]] = {
 
 
 def judge(kind: str, policy: Policy) -> npt.NDArray[np.float64]:
-    """Returns of episodes that no training has, on sensors as imperfect as usual; the same ones for every policy."""
+    """Returns of episodes that are in no training, on sensors with the default variation; the same
+    episodes for every policy.
+    """
     tasks = Tasks(kind, N_JUDGED, autoreset="Disabled")
     tasks.seed([FIRST_JUDGED + number for number in range(N_JUDGED)])
     return returns(policy, tasks)
@@ -47,14 +51,14 @@ def mean_and_error(returns: npt.NDArray[np.float64]) -> tuple[float, float]:
 
 
 def load(folder: Path, name: str, seed: int) -> tuple[PPO, VecNormalize]:
-    """A trained policy, and how its observations are brought to a deviation of one."""
+    """A trained policy, and the normalization of its observations."""
     kind = name.split("-")[0]
     scale = VecNormalize.load(str(folder / f"{name}-{seed}.pkl"), TouchVecEnv(kind, 1))
     return PPO.load(folder / f"{name}-{seed}.zip", device="cpu"), scale
 
 
 def trained_policy(model: PPO, scale: VecNormalize) -> Policy:
-    """What the network does without chance."""
+    """The network's policy without randomness."""
 
     def act(observed: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         return np.asarray(model.predict(scale.normalize_obs(observed), deterministic=True)[0], np.float32)
@@ -63,7 +67,7 @@ def trained_policy(model: PPO, scale: VecNormalize) -> Policy:
 
 
 class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
-    """Judges the policy now and then."""
+    """Evaluates the policy at regular intervals."""
 
     def __init__(self, kind: str, every: int) -> None:
         super().__init__()
@@ -73,7 +77,7 @@ class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
         self.started = time.monotonic()
 
     def judge(self) -> None:
-        """Adds a row."""
+        """Evaluates the policy, and adds a row."""
         assert isinstance(self.model, PPO)
         scale = self.model.get_vec_normalize_env()
         assert scale is not None
@@ -93,7 +97,7 @@ class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
 
 
 def train(kind: str, seed: int, imperfection: Imperfection | None, steps: int | None) -> tuple[PPO, Curve]:
-    """Proximal policy optimization with two layers of 128."""
+    """Trains with proximal policy optimization (PPO), with two layers of 128 units."""
     own = dict(SETTINGS[kind])
     n_envs, total = own.pop("n_envs"), steps or own["steps"]
     del own["steps"]
@@ -116,7 +120,9 @@ def train(kind: str, seed: int, imperfection: Imperfection | None, steps: int | 
 
 
 def write(folder: Path, name: str, kind: str, curve: Curve, others: dict[str, tuple[float, float]], better: tuple[float, float]) -> None:
-    """The learning curve as a table and as a picture; `better` is by how much it is better than the script in the same episodes."""
+    """Writes the learning curve as a table and as a plot; `better` is the advantage over the
+    scripted baseline in the same episodes, with its standard error.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / f"{name}.csv").open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
@@ -129,7 +135,7 @@ def write(folder: Path, name: str, kind: str, curve: Curve, others: dict[str, tu
 
 
 def draw(path: Path, kind: str, curve: Curve, others: dict[str, tuple[float, float]]) -> None:
-    """Return over steps."""
+    """Plots the return over steps."""
     import matplotlib  # type: ignore[import-not-found, unused-ignore]
 
     matplotlib.use("Agg")
@@ -150,7 +156,7 @@ def draw(path: Path, kind: str, curve: Curve, others: dict[str, tuple[float, flo
 
 
 def main() -> None:
-    """Trains, judges, writes."""
+    """Trains, evaluates and writes."""
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--task", choices=sorted(SETTINGS), required=True)
     arguments.add_argument("--seed", type=int, default=1)

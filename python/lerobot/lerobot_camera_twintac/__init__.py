@@ -2,10 +2,11 @@
 
 LeRobot imports this package by its name and then knows two types:
 
-- the camera `twintac`: one sensor; its picture shows the readings as grey levels;
-- the robot `twintac_robot`: any other robot, with the exact readings of its `twintac` cameras in `observation.state`.
+- the camera `twintac`: one sensor; its pictures show the readings as grey levels;
+- the robot `twintac_robot`: any other robot, with the exact readings of its `twintac` cameras in
+  `observation.state`.
 
-Pressures are in kPa above what the taxels read untouched, times in s.
+Pressures are in kPa above the readings of the untouched taxels, times in s.
 """
 
 from lerobot_camera_twintac.camera import TwintacCamera

@@ -26,28 +26,38 @@ Picture = npt.NDArray[np.uint8]
 
 
 class TwintacCamera(Camera):
-    """A TwinTac sensor as a camera of LeRobot. Pictures are RGB with red = green = blue; `[height, width, 3]`, uint8.
+    """A TwinTac sensor as a camera of LeRobot. Pictures are RGB with red = green = blue;
+    `[height, width, 3]`, uint8.
 
-    The sensor is read on a background thread at its own rate. `read`, `async_read` and `read_latest` draw the newest frame. They raise `DeviceNotConnectedError` before
-    `connect` and after `disconnect`, and `RuntimeError` with the cause once the sensor has stopped by itself. A sensor that has stopped stays connected, so that
-    the robot can still be disconnected as usual.
+    A background thread reads the sensor at the sensor's own rate. `read`, `async_read` and
+    `read_latest` draw the newest frame. They raise `DeviceNotConnectedError` before `connect` and
+    after `disconnect`, and `RuntimeError` with the cause once the sensor has stopped by itself. A
+    sensor that has stopped stays connected, so that the robot can be disconnected as usual.
 
-    Raises `ValueError` for a configuration that is wrong and for a picture too small for the taxels, `twintac.Error` for a sensor description that is wrong.
+    Args:
+        config: the configuration.
+
+    Raises:
+        ValueError: for a wrong configuration, and for a picture that is too small for the taxels.
+        twintac.Error: for a wrong sensor description.
     """
 
     def __init__(self, config: TwintacCameraConfig) -> None:
-        self._stream: FrameStream | None = None  # first, as the base class asks is_connected when it is deleted
+        # This is set first, because the base class reads `is_connected` when it is deleted.
+        self._stream: FrameStream | None = None
         config.check()
         super().__init__(config)
         self.config = config
         self.sensor: Sensor = load_sensor(config)
-        """The sensor, as its description says."""
+        """The sensor of the description."""
         self.scale = PressureScale(config.full_scale_kpa)
         """The scale between pressure and grey level."""
         self.picture: TaxelPicture | MapPicture = PICTURES[config.picture](self.sensor, self.scale, config.width or 0, config.height or 0)
-        """What draws the readings; a `TaxelPicture` also gives them back."""
+        """Draws the readings; a `TaxelPicture` also converts pictures to readings."""
         self.reading: Reading | None = None
-        """The frame that the last picture shows, with its exact readings; `None` before the first picture of a connection."""
+        """The frame of the last picture, with its exact readings; `None` before the first picture
+        of a connection.
+        """
         self.sidecar: Path | None = None
         """The file with all frames of the last connection, if the configuration asks for one."""
         self._has_clipped = False
@@ -62,18 +72,29 @@ class TwintacCamera(Camera):
 
     @property
     def provenance(self) -> str | None:
-        """Where the last picture's readings come from: `"real"` or `"emulated"`; `None` before the first picture."""
+        """Provenance of the last picture's readings: `"real"` or `"emulated"`; `None` before the
+        first picture.
+        """
         return self.reading.provenance if self.reading else None
 
     @staticmethod
     def find_cameras() -> list[dict[str, Any]]:
-        """What a sensor may be read from on this computer, with the field of the configuration for it. Nothing is opened, so no sensor need be there."""
+        """The possible sources of frames on this computer, each with its field of the
+        configuration. Nothing is opened, so a sensor need not be connected to them.
+        """
         return find_sources()
 
     def connect(self, warmup: bool = True) -> None:
-        """Starts to read the sensor. Nothing may touch it meanwhile: the first frames make the tare. With `warmup`, waits for the first frame.
+        """Starts to read the sensor. Nothing may touch the sensor during the call: the first frames
+        are the tare.
 
-        Raises `DeviceAlreadyConnectedError`, and `ConnectionError` with the cause for a source or a sidecar that cannot be opened and a sensor that gives no frame.
+        Args:
+            warmup: if true, waits for the first frame.
+
+        Raises:
+            DeviceAlreadyConnectedError: if the camera is connected.
+            ConnectionError: with the cause, for a source or a sidecar that cannot be opened, and
+                for a sensor that gives no frame.
         """
         if self._stream:
             raise DeviceAlreadyConnectedError(f"{self} is connected already: call disconnect() first")
@@ -100,19 +121,52 @@ class TwintacCamera(Camera):
         _logger.info("%s connected: %s readings, %g kPa for a grey level, level 95 is 0 kPa", self, reader.provenance, self.scale.kpa_per_level)
 
     def read(self) -> Picture:
-        """Waits for the next frame that arrives after the call, and draws it. Raises `TimeoutError` if none arrives within 5 s."""
+        """Waits for the next frame that arrives after the call, and draws it.
+
+        Returns:
+            The picture.
+
+        Raises:
+            TimeoutError: if no frame arrives within 5 s.
+        """
         return self._draw(self._connected().wait_for_next(_PATIENCE_S))
 
     def async_read(self, timeout_ms: float = 200) -> Picture:
-        """Draws the newest frame that `read` and `async_read` have not drawn yet, and waits for it up to `timeout_ms` if need be. Raises `TimeoutError` if none arrives."""
+        """Draws the newest frame that `read` and `async_read` have not drawn yet; waits for it if
+        necessary.
+
+        Args:
+            timeout_ms: longest wait, ms.
+
+        Returns:
+            The picture.
+
+        Raises:
+            TimeoutError: if no frame arrives in time.
+        """
         return self._draw(self._connected().wait_for_unseen(timeout_ms / 1e3))
 
     def read_latest(self, max_age_ms: int = 500) -> Picture:
-        """Draws the newest frame, without waiting. Raises `TimeoutError` if it is older than `max_age_ms`, `RuntimeError` if no frame has come yet."""
+        """Draws the newest frame, without waiting.
+
+        Args:
+            max_age_ms: largest age of the frame, ms.
+
+        Returns:
+            The picture.
+
+        Raises:
+            TimeoutError: if the frame is older.
+            RuntimeError: if there is no frame yet.
+        """
         return self._draw(self._connected().latest(max_age_ms / 1e3))
 
     def disconnect(self) -> None:
-        """Ends the reading, and completes the sidecar. Raises `DeviceNotConnectedError` if the camera is not connected."""
+        """Stops reading, and completes the sidecar.
+
+        Raises:
+            DeviceNotConnectedError: if the camera is not connected.
+        """
         stream, self._stream = self._connected(), None
         stream.close()
         _logger.info("%s disconnected", self)

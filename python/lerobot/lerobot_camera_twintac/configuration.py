@@ -10,7 +10,7 @@ from lerobot_camera_twintac.picture import PICTURES
 __all__ = ["TwintacCameraConfig"]
 
 SOURCES = ("lab", "bus", "serial", "udp", "replay")
-"""Fields that say where frames come from. Exactly one of them is set."""
+"""Fields for the source of frames. Exactly one of them is set."""
 
 _WITH_LINE = ("serial", "udp")
 
@@ -18,24 +18,32 @@ _WITH_LINE = ("serial", "udp")
 @CameraConfig.register_subclass("twintac")
 @dataclass(kw_only=True)
 class TwintacCameraConfig(CameraConfig):
-    """One TwinTac sensor as a camera of LeRobot. The sources have the names of the options of `twintac stream`.
+    """One TwinTac sensor as a camera of LeRobot. The sources have the names of the options of
+    `twintac stream`.
 
     - `lab`: the emulated sensor, if true. Its readings are `emulated`.
     - `bus`: I²C bus, such as `/dev/i2c-1`.
     - `serial`: serial port, such as `/dev/ttyACM0`; needs `line`.
-    - `udp`: address of this computer where frames come as datagrams, such as `0.0.0.0:9000`; needs `line`.
+    - `udp`: address of this computer at which frames arrive as datagrams, such as `0.0.0.0:9000`;
+      needs `line`.
     - `replay`: a log (MCAP), played at its own pace.
-    - `line`: file (TOML) that says how frames stand on the serial line or in datagrams.
+    - `line`: line description (TOML), which says how to read frames from the serial line or from
+      datagrams.
     - `sensor`: sensor description (TOML); PhysTac unless given.
-    - `counts_per_pa`: scale of the barometers on `bus`, confirmed by a person who knows the parts; the description's unless given.
-    - `temperature`: file (TOML) that says how zeros move with temperature, as `twintac characterize` makes it: it is taken off the readings.
-    - `picture`: `taxels` (each pixel shows the nearest taxel) or `map` (pressure interpolated between the taxels).
+    - `counts_per_pa`: scale of the barometers on `bus`, confirmed by a person who knows the parts;
+      the description's unless given.
+    - `temperature`: file (TOML) about the drift of the zeros with temperature, made by
+      `twintac characterize`: the drift is subtracted from the readings.
+    - `picture`: `taxels` (each pixel shows the nearest taxel) or `map` (pressure interpolated
+      between the taxels).
     - `full_scale_kpa`: pressure of grey level 255, kPa. One grey level is `full_scale_kpa / 160`.
-    - `sidecar`: folder; each connection writes all its frames into a new CSV file there. No file unless given.
+    - `sidecar`: folder; each connection writes all its frames into a new CSV file there. No file
+      unless given.
     - `fps`: pictures a second that the robot will take, Hz. The sensor runs at its own rate.
     - `width`, `height`: size of the picture, pixels.
 
-    What is wrong with it is said when a camera is made of it (`check`): LeRobot's command line hides the errors of a configuration's constructor.
+    Errors are raised when a camera is made of the configuration (`check`), because LeRobot's
+    command line hides the errors of a configuration's constructor.
     """
 
     fps: int | None = 30
@@ -55,7 +63,12 @@ class TwintacCameraConfig(CameraConfig):
     sidecar: str | None = None
 
     def check(self) -> None:
-        """Raises `ValueError` for no source or several, for a missing or superfluous `line` or `counts_per_pa`, and for numbers that are not positive."""
+        """Checks the configuration.
+
+        Raises:
+            ValueError: for no source or several, for a missing or superfluous `line` or
+                `counts_per_pa`, for an unknown `picture`, and for numbers that are not positive.
+        """
         given = [name for name in SOURCES if getattr(self, name)]
         if len(given) != 1:
             found = " and ".join(given) or "none"
@@ -77,5 +90,5 @@ class TwintacCameraConfig(CameraConfig):
 
     @property
     def source(self) -> str:
-        """Name of the field that says where frames come from."""
+        """Name of the field that is the source of frames."""
         return next(name for name in SOURCES if getattr(self, name))

@@ -13,11 +13,18 @@ __all__ = ["TwintacRobot"]
 
 
 class TwintacRobot(Robot):
-    """Any robot of LeRobot, with the exact readings of its `twintac` cameras as numbers in `observation.state`.
+    """Any robot of LeRobot, with the exact readings of its `twintac` cameras as numbers in
+    `observation.state`.
 
-    Observations have a number `<camera>.<taxel>_kpa` for each taxel, after those of the robot: of the same frame as the camera's picture. All else is the robot's.
+    Observations have a number `<camera>.<taxel>_kpa` for each taxel, after the numbers of the
+    robot. It is of the same frame as the camera's picture. Everything else is as in the robot.
 
-    Raises `ValueError` for a configuration that is wrong, for a robot without a `twintac` camera, and for one whose observations have another name for a camera than the camera has.
+    Args:
+        config: the configuration.
+
+    Raises:
+        ValueError: for a wrong configuration, for a robot without a `twintac` camera, and for a
+            robot whose observations give a camera another name.
     """
 
     config_class = TwintacRobotConfig
@@ -39,18 +46,18 @@ class TwintacRobot(Robot):
 
     @property
     def cameras(self) -> dict[str, Any]:
-        """The cameras whose pictures observations have, by name."""
+        """The cameras with pictures in the observations, by name."""
         return {name: camera for name, camera in self.robot.cameras.items() if self._is_shown(name)}
 
     @property
     def observation_features(self) -> dict[str, Any]:
-        """Types and shapes of what observations have, by name."""
+        """Types and shapes of the values in observations, by name."""
         readings = {key: float for name, camera in self.touch.items() for key in _keys(name, camera)}
         return {name: feature for name, feature in self.robot.observation_features.items() if self._is_shown(name)} | readings
 
     @property
     def action_features(self) -> dict[str, Any]:
-        """Types of what actions have, by name: the robot's."""
+        """Types of the values in actions, by name: those of the robot."""
         return dict(self.robot.action_features)
 
     @property
@@ -64,7 +71,11 @@ class TwintacRobot(Robot):
         return bool(self.robot.is_calibrated)
 
     def connect(self, calibrate: bool = True) -> None:
-        """Connects the robot, and with it its cameras. Nothing may touch the sensors meanwhile."""
+        """Connects the robot and its cameras. Nothing may touch the sensors during the call.
+
+        Args:
+            calibrate: passed on to the robot.
+        """
         self.robot.connect(calibrate)
 
     def calibrate(self) -> None:
@@ -76,9 +87,17 @@ class TwintacRobot(Robot):
         self.robot.configure()
 
     def get_observation(self) -> dict[str, Any]:
-        """The robot's observation, and the readings in kPa. Raises `RuntimeError` for a taxel without a reading, unless `if_missing` is `nan`."""
+        """The robot's observation, with the readings, kPa.
+
+        Returns:
+            The observation.
+
+        Raises:
+            RuntimeError: for a taxel without a reading, unless `if_missing` is `nan`, and if the
+                robot took no picture of a camera.
+        """
         for camera in self.touch.values():
-            camera.reading = None  # an older one is not given again
+            camera.reading = None  # an older reading is not used again
         observation = {name: value for name, value in self.robot.get_observation().items() if self._is_shown(name)}
         for name, camera in self.touch.items():
             reading = camera.reading
@@ -88,11 +107,18 @@ class TwintacRobot(Robot):
         return observation
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
-        """Sends an action to the robot. Returns the action that was sent."""
+        """Sends an action to the robot.
+
+        Args:
+            action: the action.
+
+        Returns:
+            The action that was sent.
+        """
         return dict(self.robot.send_action(action))
 
     def disconnect(self) -> None:
-        """Disconnects the robot, and with it its cameras."""
+        """Disconnects the robot and its cameras."""
         self.robot.disconnect()
 
     def _is_shown(self, name: str) -> bool:

@@ -1,4 +1,4 @@
-"""Sensors and their readers, as a configuration names them."""
+"""Sensors and readers of a configuration."""
 
 import sys
 from pathlib import Path
@@ -12,17 +12,34 @@ __all__ = ["find_sources", "load_sensor", "open_reader"]
 
 
 def load_sensor(config: TwintacCameraConfig) -> Sensor:
-    """The sensor that a configuration describes; PhysTac if it names no file.
+    """Loads the sensor description of a configuration; PhysTac if it names no file.
 
-    Raises `twintac.Error` with file, line and field for a description that is wrong or cannot be read.
+    Args:
+        config: the configuration.
+
+    Returns:
+        The sensor.
+
+    Raises:
+        twintac.Error: with file, line and field, for a description that is wrong or cannot be read.
     """
     return Sensor.load(config.sensor) if config.sensor else Sensor.phystac()
 
 
 def open_reader(config: TwintacCameraConfig, sensor: Sensor) -> Reader:
-    """Starts to read the sensor at the source of a configuration. Nothing may touch the sensor meanwhile: the first frames make the tare.
+    """Starts to read the sensor at the source of a configuration. Nothing may touch the sensor
+    during the call: the first frames are the tare.
 
-    Raises `twintac.Error` for a source that cannot be opened, a sensor that gives no frame there, and a file of temperatures that is wrong.
+    Args:
+        config: the configuration.
+        sensor: the sensor.
+
+    Returns:
+        The reader.
+
+    Raises:
+        twintac.Error: for a source that cannot be opened, a sensor that gives no frame there, and a
+            wrong file of temperatures.
     """
     reader = _opened(config, sensor)
     if config.temperature:
@@ -47,7 +64,12 @@ def _opened(config: TwintacCameraConfig, sensor: Sensor) -> Reader:
 
 
 def find_sources() -> list[dict[str, Any]]:
-    """What a sensor may be read from on this computer: the emulated sensor, and on Linux the I²C buses and serial ports. Nothing is opened, so no sensor need be there."""
+    """The possible sources of frames on this computer: the emulated sensor, and on Linux the I²C
+    buses and serial ports. Nothing is opened, so a sensor need not be connected to them.
+
+    Returns:
+        A dictionary for each source, with its field of the configuration.
+    """
     found: list[dict[str, Any]] = [{"type": "twintac", "name": "emulated sensor", "id": "lab", "lab": True}]
     if sys.platform == "linux":
         for source, kind, pattern in (("bus", "I²C bus", "i2c-*"), ("serial", "serial port", "ttyACM*"), ("serial", "serial port", "ttyUSB*")):

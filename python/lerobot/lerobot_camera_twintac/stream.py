@@ -1,4 +1,4 @@
-"""The newest frame of a sensor, read on a background thread."""
+"""The newest frame of a sensor, read by a background thread."""
 
 import logging
 import threading
@@ -15,7 +15,7 @@ __all__ = ["FrameStream"]
 _logger = logging.getLogger(__name__)
 
 STALE_S = 0.5
-"""A frame that is older is never given as a new one, s."""
+"""Age above which a frame does not count as new, s."""
 
 _CLOSING_S = 5.0
 
@@ -33,11 +33,20 @@ class _Frame:
 
 
 class FrameStream:
-    """Reads all frames of a sensor as they come, keeps the newest and writes each into a sidecar, if there is one.
+    """Reads all frames of a sensor, keeps the newest one, and writes each into the sidecar, if
+    there is one.
 
-    It owns reader and sidecar, and closes both. `name` begins its errors. All methods may be called from several threads.
+    The stream owns the reader and the sidecar, and closes both. All methods may be called from
+    several threads.
 
-    What takes a frame raises `RuntimeError` once the reading has stopped by itself: a sensor that fails or is silent, a log that is over, a sidecar that cannot be written.
+    The methods that return a frame raise `RuntimeError` once the reading has stopped by itself:
+    after a failure or silence of the sensor, at the end of a log, and if the sidecar cannot be
+    written.
+
+    Args:
+        reader: the reader.
+        sidecar: the sidecar, or `None`.
+        name: beginning of the messages of errors.
     """
 
     def __init__(self, reader: Reader, sidecar: Sidecar | None, name: str) -> None:
@@ -51,24 +60,60 @@ class FrameStream:
         self._thread.start()
 
     def wait_for_first(self, timeout_s: float) -> None:
-        """Waits until there is a frame; takes none. Raises `TimeoutError` if none arrives within `timeout_s`."""
+        """Waits until there is a frame, and does not take it.
+
+        Args:
+            timeout_s: longest wait, s.
+
+        Raises:
+            TimeoutError: if no frame arrives in time.
+        """
         with self._changed:
             self._wait(lambda _: True, timeout_s)
 
     def wait_for_next(self, timeout_s: float) -> Reading:
-        """The next frame that arrives after the call. Raises `TimeoutError` if none arrives within `timeout_s`."""
+        """Waits for the next frame that arrives after the call.
+
+        Args:
+            timeout_s: longest wait, s.
+
+        Returns:
+            The frame.
+
+        Raises:
+            TimeoutError: if no frame arrives in time.
+        """
         called_s = time.monotonic()
         return self._wait_and_take(lambda frame: frame.arrived_s >= called_s, timeout_s)
 
     def wait_for_unseen(self, timeout_s: float) -> Reading:
-        """The newest frame, if this method has not returned it before and it is not older than 0.5 s; else the next one.
+        """The newest frame, if this method has not returned it before and it is not older than 0.5
+        s; else waits for the next one.
 
-        Raises `TimeoutError` if none arrives within `timeout_s`.
+        Args:
+            timeout_s: longest wait, s.
+
+        Returns:
+            The frame.
+
+        Raises:
+            TimeoutError: if no frame arrives in time.
         """
         return self._wait_and_take(lambda frame: frame is not self._consumed and frame.age_s <= STALE_S, timeout_s)
 
     def latest(self, max_age_s: float) -> Reading:
-        """The newest frame, without waiting. Raises `TimeoutError` if it is older than `max_age_s`, `RuntimeError` if there is none yet."""
+        """The newest frame, without waiting.
+
+        Args:
+            max_age_s: largest age of the frame, s.
+
+        Returns:
+            The frame.
+
+        Raises:
+            TimeoutError: if the frame is older.
+            RuntimeError: if there is no frame yet.
+        """
         with self._changed:
             self._check()
             if self._newest is None:
@@ -78,7 +123,7 @@ class FrameStream:
             return self._take(self._newest)
 
     def close(self) -> None:
-        """Ends the reading. The sidecar then has all frames."""
+        """Stops reading. The sidecar then has all frames."""
         with self._changed:
             self._is_closing = True
         self._reader.close()
@@ -92,7 +137,7 @@ class FrameStream:
             return self._take(self._consumed)
 
     def _wait(self, is_wanted: Callable[[_Frame], bool], timeout_s: float) -> _Frame:
-        """The newest frame, once it is wanted; called with the lock held."""
+        """Waits until the newest frame is a wanted one. Returns it. The caller holds the lock."""
         self._changed.wait_for(lambda: self._failure or self._is_closing or (self._newest and is_wanted(self._newest)), timeout_s)
         self._check()
         frame = self._newest
@@ -113,7 +158,9 @@ class FrameStream:
         return frame.reading
 
     def _run(self) -> None:
-        """Reads until the end. A frame is written when the next one has come: nobody takes pictures of it any more."""
+        """Reads until the end. A frame is written when the next one has arrived: no more pictures
+        are taken of it then.
+        """
         failure: Exception = EOFError("the log has no more frames")
         try:
             for reading in self._reader:
@@ -122,7 +169,7 @@ class FrameStream:
                     previous, self._newest = self._newest, frame
                     self._changed.notify_all()
                 self._write(previous)
-        except Exception as error:  # whatever it is, who takes a frame is told
+        except Exception as error:  # any error is passed on to the methods that return frames
             failure = error
         with self._changed:
             if not self._is_closing:

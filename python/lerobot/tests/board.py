@@ -1,4 +1,4 @@
-"""A microcontroller with the taxels of a PhysTac that sends frames, for tests."""
+"""An emulated microcontroller with the taxels of a PhysTac, which sends frames, for tests."""
 
 import os
 import pty
@@ -17,12 +17,14 @@ _UNTOUCHED_KPA = 100.0
 
 
 class Board:
-    """Sends frames of text from a thread, as datagrams and to a serial port, while it is used in a `with` block.
+    """Sends frames of text from a thread, as datagrams and to a serial port, while it is used in a
+    `with` block.
 
-    - `line`: the file that says how frames stand on the line.
-    - `address`: where the datagrams go.
+    - `line`: the line description.
+    - `address`: destination of the datagrams.
     - `port`: the serial port.
-    - `readings_kpa`: what the next frames read above untouched taxels; NaN of a taxel that gives nothing. `[8]`
+    - `readings_kpa`: readings of the next frames above untouched taxels; NaN for a taxel without a
+      reading. `[8]`
     - `is_sending`: whether frames are sent.
     """
 
@@ -54,7 +56,9 @@ class Board:
         os.close(self._reading)
 
     def touch(self, readings_kpa: list[float]) -> None:
-        """Changes what frames read, and waits until frames with it have been sent."""
+        """Changes the readings of frames, and waits until frames with these readings have been
+        sent.
+        """
         self.readings_kpa = readings_kpa
         time.sleep(10.0 / RATE_HZ)
 
@@ -73,4 +77,4 @@ class Board:
                     try:
                         os.write(self._writing, frame)
                     except BlockingIOError:
-                        pass  # nobody listens to the port
+                        pass  # the port has no listener

@@ -1,4 +1,4 @@
-"""What several tests use."""
+"""Fixtures that several tests use."""
 
 import importlib.util
 from collections.abc import Iterator
@@ -13,6 +13,6 @@ if importlib.util.find_spec("lerobot") is None:
 
 @pytest.fixture
 def board(tmp_path: Path) -> Iterator[Board]:
-    """A microcontroller that sends frames."""
+    """An emulated microcontroller that sends frames."""
     with Board(tmp_path) as board:
         yield board

@@ -1,4 +1,6 @@
-"""A robot of one joint and its leader, for tests: LeRobot finds and uses them like any other."""
+"""A robot with one joint and its leader, for tests: LeRobot finds and uses them like any other
+robot.
+"""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,13 +13,13 @@ from lerobot.teleoperators import Teleoperator, TeleoperatorConfig
 @RobotConfig.register_subclass("stand_in")
 @dataclass(kw_only=True)
 class StandInConfig(RobotConfig):
-    """A robot with cameras."""
+    """Configuration of a robot with cameras."""
 
     cameras: dict[str, CameraConfig] = field(default_factory=dict)
 
 
 class StandIn(Robot):
-    """A robot whose joint is where it was told to be."""
+    """A robot whose joint is always at its commanded position."""
 
     config_class = StandInConfig
     name = "stand_in"
@@ -66,11 +68,11 @@ class StandIn(Robot):
 @TeleoperatorConfig.register_subclass("stand_in")
 @dataclass(kw_only=True)
 class StandInLeaderConfig(TeleoperatorConfig):
-    """A leader."""
+    """Configuration of a leader."""
 
 
 class StandInLeader(Teleoperator):
-    """A leader that moves on by one with each action."""
+    """A leader whose position increases by one with each action."""
 
     config_class = StandInLeaderConfig
     name = "stand_in"

@@ -1,4 +1,4 @@
-"""A sensor that is read as a camera."""
+"""Tests of a sensor that is read as a camera."""
 
 import time
 from pathlib import Path
@@ -50,7 +50,8 @@ def test_a_picture_shows_what_the_sensor_reads(source: str, board: Board) -> Non
         np.testing.assert_array_equal(readings_kpa(camera, camera.read()), 0.0)
         board.touch(TOUCHED_KPA)
         for picture in (camera.read(), camera.async_read(), camera.read_latest()):
-            np.testing.assert_array_equal(readings_kpa(camera, picture), TOUCHED_KPA)  # multiples of a grey level
+            # multiples of a grey level
+            np.testing.assert_array_equal(readings_kpa(camera, picture), TOUCHED_KPA)
         assert camera.provenance == "real"
 
 
@@ -92,7 +93,7 @@ def test_a_frame_that_is_too_old_is_an_error(board: Board) -> None:
         with pytest.raises(TimeoutError, match=r"the newest frame is \d+ ms old, more than 100 ms"):
             camera.read_latest(max_age_ms=100)
         assert camera.read_latest(max_age_ms=1000).shape == (64, 96, 3)
-        camera.async_read(timeout_ms=10)  # the last frame was not given by it yet
+        camera.async_read(timeout_ms=10)  # `async_read` has not returned the last frame yet
         with pytest.raises(TimeoutError, match="no new frame within 50 ms; the newest is"):
             camera.async_read(timeout_ms=50)
         board.is_sending = True
@@ -100,7 +101,7 @@ def test_a_frame_that_is_too_old_is_an_error(board: Board) -> None:
         board.is_sending = False
         time.sleep(0.7)
         with pytest.raises(TimeoutError, match="no new frame within 10 ms"):
-            camera.async_read(timeout_ms=10)  # one has come since, but is stale
+            camera.async_read(timeout_ms=10)  # a newer frame has arrived, but it is stale
         board.is_sending = True
         camera.async_read(timeout_ms=1000)
 
@@ -110,12 +111,12 @@ def test_a_sensor_that_stops_is_said_and_can_be_connected_again(board: Board) ->
     camera.connect()
     board.is_sending = False
     with pytest.raises(RuntimeError, match=r"twintac camera \(udp .*\) has stopped: .*; remove the cause"):
-        for _ in range(100):  # frames that are under way, and then the wait until the reader gives up
+        for _ in range(100):  # frames in transit, then the wait until the reader gives up
             camera.read()
     for read in (camera.read, camera.async_read, camera.read_latest):
         with pytest.raises(RuntimeError, match="has stopped"):
             read()
-    assert camera.is_connected  # as robots ask before they disconnect
+    assert camera.is_connected  # robots check this before they disconnect
     camera.disconnect()
     board.is_sending = True
     with camera:

@@ -1,4 +1,4 @@
-"""Touch in data sets that LeRobot itself records and loads."""
+"""Tests of touch in data sets that LeRobot records and loads."""
 
 import csv
 from pathlib import Path
@@ -22,13 +22,13 @@ NAMES = ["joint.pos", *(f"touch.t{taxel}_kpa" for taxel in range(8))]
 
 
 def picture_of(sample: dict[str, Any]) -> npt.NDArray[np.float64]:
-    """A sample's picture, levels 0 to 255; `[height, width, channels]`."""
+    """The picture of a sample, levels 0 to 255; `[height, width, channels]`."""
     pixels: npt.NDArray[np.float64] = 255.0 * sample["observation.images.touch"].permute(1, 2, 0).numpy()
     return pixels
 
 
 def observed_kpa(sidecar: Path) -> npt.NDArray[np.float64]:
-    """Readings of the frames that pictures were taken of, in order; `[n_pictures, 8]`, kPa."""
+    """Readings of the frames of which pictures were taken, in order; `[n_pictures, 8]`, kPa."""
     with sidecar.open(newline="") as file:
         rows = [row for row in csv.DictReader(file) for _ in range(int(row["pictures"]))]
     return np.array([[float(row[f"t{taxel}_kpa"]) for taxel in range(8)] for row in rows])
@@ -51,11 +51,13 @@ def test_what_lerobot_records_is_what_the_sensor_read(tmp_path: Path) -> None:
     state = np.array([sample["observation.state"].numpy() for sample in samples])
     np.testing.assert_array_equal(state[:, 0], np.arange(len(data)))
     exact_kpa = observed_kpa(tmp_path / "touch/frames-0001.csv")
-    np.testing.assert_array_equal(state[:, 1:], exact_kpa.astype(np.float32))  # each observation, in order
+    # each observation, in order
+    np.testing.assert_array_equal(state[:, 1:], exact_kpa.astype(np.float32))
     assert len(np.unique(exact_kpa, axis=0)) > len(data) / 2
     picture = TaxelPicture(Sensor.phystac(), PressureScale(16.0), width=96, height=64)
     seen_kpa = np.array([picture.readings_kpa(picture_of(sample)) for sample in samples])
-    assert np.abs(seen_kpa - exact_kpa).max() <= 4.0 * picture.scale.kpa_per_level  # the video is lossy
+    # the video is lossy
+    assert np.abs(seen_kpa - exact_kpa).max() <= 4.0 * picture.scale.kpa_per_level
 
 
 def test_pictures_without_compression_are_within_half_a_grey_level(tmp_path: Path, board: Board) -> None:

@@ -1,4 +1,6 @@
-"""LeRobot finds the plugin by its name, and its command line knows the plugin's types."""
+"""Tests that LeRobot finds the plugin by its name, and that its command line knows the plugin's
+types.
+"""
 
 import importlib.metadata
 import subprocess
@@ -31,18 +33,18 @@ print(before, known())
 
 @dataclass
 class RobotAlone:
-    """What the commands of LeRobot have in common."""
+    """The common part of the configurations of LeRobot's commands."""
 
     robot: RobotConfig
 
 
 def parsed(*arguments: str) -> Any:
-    """What `lerobot-record` makes of its arguments."""
+    """The configuration that `lerobot-record` makes of its arguments."""
     return draccus.parse(RecordConfig, args=[*arguments, *OTHERS], exit_on_error=False)
 
 
 def parsed_alone(*arguments: str) -> Any:
-    """The same for a command that has a robot and nothing else, which is read sooner."""
+    """The same for a command that has only a robot, whose arguments are read earlier."""
     return draccus.parse(RobotAlone, args=arguments, exit_on_error=False)
 
 
@@ -76,7 +78,7 @@ def test_the_robot_wraps_another_one() -> None:
     robot = "{type: stand_in, cameras: {touch: {type: twintac, lab: true}}}"
     config = parsed("--robot.type=twintac_robot", f"--robot.robot={robot}").robot
     make_robot_from_config(config)
-    made = make_robot_from_config(config)  # the configuration is as it was
+    made = make_robot_from_config(config)  # the configuration is unchanged
     assert isinstance(made, TwintacRobot)
     assert made.observation_features == {"joint.pos": float, "touch": (64, 96, 3), **{f"touch.t{taxel}_kpa": float for taxel in range(8)}}
     assert made.action_features == {"joint.pos": float}

@@ -1,4 +1,4 @@
-"""The scale between pressure and grey level, and the places of taxels."""
+"""Tests of the scale between pressure and grey level, and of the taxels' positions in pictures."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The Python of README.md runs as it stands."""
+"""Tests that the Python code of README.md runs as it stands."""
 
 import re
 from pathlib import Path

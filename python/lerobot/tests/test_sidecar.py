@@ -1,4 +1,4 @@
-"""The file with every frame."""
+"""Tests of the file with every frame."""
 
 import csv
 import math
@@ -29,7 +29,7 @@ def config(board: Board, folder: Path) -> TwintacCameraConfig:
 
 
 def rows(path: Path) -> list[dict[str, str]]:
-    """The rows of a file, each of which has all columns."""
+    """The rows of a file. Each row has all columns."""
     with path.open(newline="") as file:
         found = list(csv.DictReader(file))
     assert all(None not in row and None not in row.values() for row in found)

@@ -1,5 +1,4 @@
-"""What the gel is touched by: for each point of its surface, how far inside a body it lies, or how
-close to one."""
+"""The input of the surrogate: for each point of the gel's surface, its distance to the bodies."""
 
 from typing import Any, NamedTuple
 
@@ -9,21 +8,25 @@ from ._namespace import Array
 from ._shapes import Shapes
 
 REACH_MM = 2.0
-"""What is farther away from a point does not press there."""
+"""Bodies farther away from a point than this do not count there, mm."""
 
 
 class Near(NamedTuple):
-    """What is near the gel."""
+    """The proximity of bodies to the gel."""
 
     share: Array
-    """How much of the reach around a body is left: 0 far away, 1 at its surface, more inside. Of the
-    nearest body `[..., n_points, n_levels]`, of each `[..., n_bodies, n_points, n_levels]`."""
+    """The proximity: 0 at the distance `REACH_MM` and beyond, 1 at the surface of a body, more
+    inside. For the nearest body `[..., n_points, n_levels]`, for each body
+    `[..., n_bodies, n_points, n_levels]`.
+    """
     gap_mm: Array
-    """How far each body is from the nearest point, less than 0 in the gel, `[..., n_bodies]`."""
+    """Distance of each body from the nearest point of the gel, mm, negative inside the gel,
+    `[..., n_bodies]`.
+    """
 
 
 def near(xp: Any, gel: Gel, shapes: Shapes, position_mm: Array, rotation: Array) -> Near:
-    """What is near the gel: the nearest body of each point and level."""
+    """The proximity of the nearest body, for each point and level."""
     share, gap_mm = share_of_bodies(xp, gel, shapes, position_mm, rotation)
     return Near(xp.max(share, axis=-3), gap_mm)
 
@@ -31,10 +34,10 @@ def near(xp: Any, gel: Gel, shapes: Shapes, position_mm: Array, rotation: Array)
 def share_of_bodies(
     xp: Any, gel: Gel, shapes: Shapes, position_mm: Array, rotation: Array
 ) -> Near:
-    """How near each body is to the gel.
+    """The proximity of each body to the gel.
 
-    Everything is written by components: products of matrices are rounded to ten bits on some
-    devices, which may be done to networks, and not to places.
+    All products are written by components: some devices round the factors of matrix products to ten
+    bits. This is acceptable for networks, but not for positions.
     """
     of_gel = [[rotation[..., row, column, None, None] for row in range(3)] for column in range(3)]
     up = [axis[2] for axis in of_gel]
@@ -46,7 +49,7 @@ def share_of_bodies(
         (axis[0] * away_mm[0] + axis[1] * away_mm[1]) + axis[2] * height_mm for axis in of_gel
     ]
     middle_mm, half_mm = _box_in_gel(xp, shapes, of_gel)
-    # What is less deep than half of its thickness has its top nowhere near a point.
+    # A body that is less deep than half of its smallest thickness keeps its own top.
     lowest_mm = position_mm[..., 2, None, None] + middle_mm[2] - half_mm[2]
     size_mm = shapes.half_mm + shapes.grown_mm[..., None]
     thin_mm = xp.min(size_mm, axis=-1)[..., None, None]
@@ -54,8 +57,8 @@ def share_of_bodies(
     found_mm = distance_mm(xp, shapes, point_mm, up, is_open)
     deepest_mm = xp.maximum(found_mm, -gel.deepest_mm)
     share = xp.clip((REACH_MM - deepest_mm) * (1.0 / REACH_MM), 0.0, None)
-    # What goes on above its top does so above itself alone; and what is not near the surface is not
-    # near anything below it.
+    # A body is extended only above its own bounding box. A point whose surface level is not near a
+    # body counts as far from it on all levels.
     is_above = share[..., :1] > 0.0
     for axis in (0, 1):
         is_beside = xp.abs(away_mm[axis] - middle_mm[axis]) > half_mm[axis] + REACH_MM
@@ -69,7 +72,9 @@ def share_of_bodies(
 def _box_in_gel(
     xp: Any, shapes: Shapes, of_gel: list[list[Array]]
 ) -> tuple[list[Array], list[Array]]:
-    """Middle and half of the box along the gel's axes that holds a body, from its origin."""
+    """Middle and half size, along the gel's axes, of the box that holds a body; the middle is
+    relative to the body's origin.
+    """
     own_mm = [shapes.middle_mm[..., axis, None, None] for axis in range(3)]
     size_mm = shapes.half_mm + shapes.grown_mm[..., None]
     half_mm = [size_mm[..., axis, None, None] for axis in range(3)]

@@ -1,4 +1,4 @@
-"""From one library, precision and device to another."""
+"""Conversion between libraries, precisions and devices."""
 
 from typing import Any, TypeVar
 
@@ -10,10 +10,18 @@ _Tree = TypeVar("_Tree")
 
 
 def convert(tree: _Tree, like: Array) -> _Tree:
-    """The same gel, shapes or friction with arrays of the library, the precision and the device of
-    the array `like`, such as `convert(gel, torch.zeros(1, device="cuda"))`. Masks stay masks.
+    """Converts a gel, shapes or friction to arrays of another library, precision and device.
 
-    Raises `Error` where `like` is no array of single or double precision.
+    Args:
+        tree: the gel, the shapes or the friction; masks stay masks.
+        like: an array of the library, precision and device to convert to, such as
+            `torch.zeros(1, device="cuda")`.
+
+    Returns:
+        The same data with the new arrays.
+
+    Raises:
+        Error: if `like` is no array of single or double precision.
     """
     xp = namespace("like", like)
     precision = str(like.dtype).rpartition(".")[2]

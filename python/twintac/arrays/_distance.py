@@ -1,5 +1,7 @@
-"""Signed distances to bodies. A body that is deeper than it is thick goes on above its top: what is
-above a body in a gel is as deep as in one that goes on, as gels are never above a body.
+"""Signed distances to bodies.
+
+A body that is deeper than it is thick is extended upward above its top. Points of the undeformed
+gel above the top would otherwise count as outside the body, although a gel is never above a body.
 """
 
 from typing import Any
@@ -8,12 +10,13 @@ from ._namespace import Array, root
 from ._samples import sampled_mm
 from ._shapes import Shapes
 
-# How steeply a face looks up, as the height of its normal, to be a top in part, and as a whole; by
-# how much more that of a thick body has to; what is thin and thick, mm.
+# A face counts as a top according to the height of its upward normal: not at all at the first
+# value, wholly at the second. `_MORE` is added to both for thick bodies. Below `_THIN_MM` a body is
+# thin, above `_THICK_MM` thick, mm.
 _LOOKS_UP = (0.1, 0.3)
 _MORE = 0.4
 _THIN_MM, _THICK_MM = 2.5, 3.5
-# Steps to the point of an ellipsoid that is nearest. Four find it to a thousandth of its size.
+# Newton steps to the nearest point of an ellipsoid. Four steps find it to a thousandth of the size.
 _N_STEPS = 6
 _TINY = 1e-6
 
@@ -21,12 +24,13 @@ _TINY = 1e-6
 def distance_mm(
     xp: Any, shapes: Shapes, point_mm: list[Array], up: list[Array], is_open: Array
 ) -> Array:
-    """The distance of points to bodies, mm, less than 0 inside:
+    """The distances of points to bodies, mm, negative inside:
     `[..., n_bodies, n_points, n_levels]`.
 
     - `point_mm`: three coordinates in each body's frame, each of that shape.
     - `up`: the gel's z axis in each body's frame, three coordinates `[..., n_bodies, 1, 1]`.
-    - `is_open`: 1 where a body goes on above its top, else 0; `[..., n_bodies, n_points or 1, 1]`.
+    - `is_open`: 1 where a body is extended above its top, else 0;
+      `[..., n_bodies, n_points or 1, 1]`.
     """
     half_mm = [shapes.half_mm[..., axis, None, None] for axis in range(3)]
     grown_mm = shapes.grown_mm[..., None, None]
@@ -42,7 +46,8 @@ def distance_mm(
         found_mm = put(shapes.is_cylinder, _cylinder_mm(xp, half_mm, grown_mm, own_mm, up, is_open))
     if shapes.is_ellipsoid is not None:
         mask = shapes.is_ellipsoid[..., None, None]
-        axes_mm = [xp.where(mask, half, 1.0) for half in half_mm]  # no others divide by zero
+        # prevents a division by zero for other shapes
+        axes_mm = [xp.where(mask, half, 1.0) for half in half_mm]
         found_mm = put(shapes.is_ellipsoid, _ellipsoid_mm(xp, axes_mm, own_mm, up, is_open))
     if shapes.is_plane is not None:
         found_mm = put(shapes.is_plane, own_mm[2])
@@ -52,7 +57,9 @@ def distance_mm(
 
 
 def _ball_mm(xp: Any, own_mm: list[Array], up: list[Array], is_open: Array) -> Array:
-    """The distance to a ball's middle; of one that goes on, to the axis above it."""
+    """The distance to the centre of a ball; for an extended ball, to the vertical axis above its
+    centre.
+    """
     above_mm = is_open * xp.clip(sum(map(_product, own_mm, up)), 0.0, None)
     return root(xp, sum((own - above_mm * way) ** 2 for own, way in zip(own_mm, up)))
 
@@ -68,7 +75,7 @@ def _box_mm(
     height = [xp.abs(way) for way in up]
     tops = [is_open * _top(xp, height[i], 2.0 * (half_mm[i] + grown_mm)) for i in range(3)]
     main = _lowest(xp, half_mm, tops)
-    # What leans out over the gel ends with the top: from there on its side is upright.
+    # A side that leans out over the gel ends at the top. The extension above it has upright sides.
     upright = sum(map(_product, height, main))
     slope = sum(map(_product, tops, main)) / xp.where(upright > 0.0, upright, 1.0)
     sign = [_sign(xp, way) for way in up]
@@ -100,7 +107,7 @@ def _cylinder_mm(
     out_mm = side * xp.clip(x_mm * way[0] + y_mm * way[1], 0.0, None)
     x_mm, y_mm = x_mm - out_mm * way[0], y_mm - out_mm * way[1]
     above_mm = xp.abs(z_mm) - half_mm[2] - xp.clip(2.0 * end * sign * z_mm, 0.0, None)
-    # Beside a top that leans, the side is upright.
+    # Above a tilted top, the side of the extension is upright.
     slope = end / xp.where(height > 0.0, height, 1.0)
     over_mm = slope * xp.clip(sign * z_mm - half_mm[2], 0.0, None)
     leaning_mm2 = (x_mm - up[0] * over_mm) ** 2 + (y_mm - up[1] * over_mm) ** 2
@@ -111,15 +118,16 @@ def _cylinder_mm(
 def _ellipsoid_mm(
     xp: Any, half_mm: list[Array], own_mm: list[Array], up: list[Array], is_open: Array
 ) -> Array:
-    """The exact distance, from the nearest point: where the normal there passes the point. One that
-    goes on is upright above its widest part."""
+    """The exact distance: to the point of the surface whose normal passes through the given point.
+    An extended ellipsoid has upright sides above its widest cross-section.
+    """
     bent = [way / half**2 for way, half in zip(up, half_mm)]
     above = sum(map(_product, own_mm, bent)) / sum(map(_product, up, bent))
     above_mm = is_open * xp.clip(above, 0.0, None)
     away_mm = [xp.abs(own - above_mm * way) for own, way in zip(own_mm, up)]
     least_mm = xp.minimum(xp.minimum(half_mm[0], half_mm[1]), half_mm[2])
     over_mm2 = [half**2 - least_mm**2 for half in half_mm]
-    # The nearest point is at `half² away / (shift + half² - least²)` with one shift for all axes.
+    # The nearest point is `half² away / (shift + half² - least²)`, with one shift for all axes.
     reach_mm2 = [half * (away + _TINY * least_mm) for half, away in zip(half_mm, away_mm)]
     shift = _largest(xp, [reach - over for reach, over in zip(reach_mm2, over_mm2)])
     for _ in range(_N_STEPS):
@@ -136,13 +144,13 @@ def _ellipsoid_mm(
 
 
 def _over_sides_mm(xp: Any, beyond_mm: list[Array]) -> Array:
-    """The distance by how far a point is beyond the faces across each axis."""
+    """The distance, from the distances of a point beyond the faces of each axis."""
     outside_mm = root(xp, sum(xp.clip(beyond, 0.0, None) ** 2 for beyond in beyond_mm))
     return outside_mm + xp.clip(_largest(xp, beyond_mm), None, 0.0)
 
 
 def _top(xp: Any, height: Array, thick_mm: Array) -> Array:
-    """How far a face is a top, from 0 to 1."""
+    """The degree to which a face counts as a top, 0 to 1."""
     thick = xp.clip((thick_mm - _THIN_MM) / (_THICK_MM - _THIN_MM), 0.0, 1.0)
     side, top = _LOOKS_UP
     part = xp.clip((height - side - _MORE * thick) / (top - side), 0.0, 1.0)
@@ -150,7 +158,9 @@ def _top(xp: Any, height: Array, thick_mm: Array) -> Array:
 
 
 def _lowest(xp: Any, half_mm: list[Array], tops: list[Array]) -> list[Array]:
-    """1 for the axis along which a box is thinnest under a top, else 0; all 0 without a top."""
+    """1 for the axis along which a box is thinnest, among the axes with a top; 0 for the other
+    axes.
+    """
     far = [xp.where(top > 0.0, half, xp.inf) for half, top in zip(half_mm, tops)]
     least = xp.minimum(xp.minimum(far[0], far[1]), far[2])
     found, left = [], xp.ones_like(least)

@@ -1,10 +1,10 @@
-"""Friction of bodies on gels, from one moment to the next, with what it remembers as arrays.
+"""Friction of bodies on gels, from one time step to the next, with the state as arrays.
 
-Sticking, a gel resists as an elastic layer on a rigid base does under a rigid disc of the contact's
-area, with `8 G a / (2 - ν) (1 + a / 2 h)` along the surface and `16/3 G a³` about the vertical
-(Gazetas, 1991, "Formulas and charts for impedances of surface and embedded foundations"); force and
-torque together slip at Coulomb's limit (an ellipsoid: Howe and Cutkosky, 1996). It is what Rust's
-`Friction` and `Coupling` do.
+A gel that sticks resists like an elastic layer on a rigid base under a rigid disc of the contact's
+area: with the stiffness `8 G a / (2 - ν) (1 + a / 2 h)` along the surface and `16/3 G a³` about the
+vertical (Gazetas, 1991, "Formulas and charts for impedances of surface and embedded foundations").
+Force and torque together slip at Coulomb's limit (an ellipsoid: Howe and Cutkosky, 1996). The
+results are those of Rust's `Friction` and `Coupling`.
 """
 
 import math
@@ -25,74 +25,87 @@ from ._shapes import Shapes
 
 _Floats = npt.NDArray[np.float64]
 
-# Points that are inside a body by more than this part of the deepest carry it, and how wide the
-# change is from those that do not.
+# A point carries a body if it lies inside it by more than this fraction of the largest depth; width
+# of the transition, as such a fraction.
 _CARRYING, _CHANGE = 0.38, 0.24
-# The gel under a body is no thinner than this part of what it was.
+# Smallest thickness of the gel under a body, as a fraction of its undeformed thickness.
 _THINNEST = 0.4
 _LEAST_RADIUS_MM = 0.5
-# Lever arm of friction that turns a contact about its middle, as part of its radius.
+# Lever arm of the friction that resists rotation about the contact's middle, as a fraction of the
+# contact's radius.
 _ARM_OF_RADIUS = 0.6
-# The table of what a pull does at the gel's base: distance of its entries and its end, in heights;
-# step and end of the waves that are summed, in radians over the height.
+# The table of the pressure at the gel's base under a tangential force: spacing and end of its
+# distances, in heights of the gel; step and end of the wave numbers that are summed, in radians per
+# height.
 _STEP, _FURTHEST = 0.02, 5.0
 _WAVE_STEP, _SHORTEST_WAVE = 0.05, 25.0
 _N_NODES = 256
 
 
 class Friction(NamedTuple):
-    """Friction on a gel, as arrays: what `friction` returns."""
+    """Friction on a gel, as arrays: the result of `friction`."""
 
     coefficient: Array
-    """Coulomb's, `[]`."""
+    """Coulomb's coefficient of friction, `[]`."""
     retardation_s: Array
-    """Time by which the gel's force leads its elastic one, s, `[]`."""
+    """Time constant of the gel's damping, s, `[]`: this time multiplied by the rate of the elastic
+    force is added to the elastic force.
+    """
     shear_modulus_n_per_mm2: Array
+    """Shear modulus of the gel at small strain, N/mm², `[]`."""
     poissons_ratio: Array
+    """Poisson's ratio of the gel, `[]`."""
     height_mm: Array
-    """Of the gel, `[]`."""
+    """Height of the gel, mm, `[]`."""
     area_mm2: Array
-    """Of the gel's surface for each point, `[]`."""
+    """Area of the gel's surface for each point, mm², `[]`."""
     order: Array
-    """Numbers of the points of the first grid, 1 and so on, `[n_points]`."""
+    """Numbers of the points of the first grid, from 1, `[n_points]`."""
     way: Array
-    """From the points of the first grid to the ports, of length 1, `[2, n_taxels, n_points]`."""
+    """Unit vectors from the points of the first grid to the ports, `[2, n_taxels, n_points]`."""
     away_mm: Array
-    """How far it is, `[n_taxels, n_points]`."""
+    """Distances from the points of the first grid to the ports, mm, `[n_taxels, n_points]`."""
     kernel: Array
-    """What a pull does at the base at distances that grow evenly, `[n_entries]`."""
+    """Pressure at the base under a tangential force, at evenly spaced distances, `[n_entries]`."""
 
 
 class Held(NamedTuple):
-    """What gels remember of each body: what `held` and `step` return."""
+    """The state of friction and damping of gels, for each body: the result of `held` and `step`."""
 
     is_held: Array
-    """Whether it was in touch, `[..., n_bodies]`."""
+    """Whether the gel held the body in the previous step, `[..., n_bodies]`."""
     position_mm: Array
-    """Where it was, `[..., n_bodies, 3]`."""
+    """Position of the body in the previous step, mm, `[..., n_bodies, 3]`."""
     rotation: Array
-    """`[..., n_bodies, 3, 3]`"""
+    """Rotation of the body in the previous step, `[..., n_bodies, 3, 3]`."""
     force_n: Array
-    """What friction holds along the surface, `[..., n_bodies, 2]`, and about the vertical."""
+    """Friction force along the surface, N, `[..., n_bodies, 2]`."""
     torque_n_mm: Array
+    """Friction torque about the vertical, N mm, `[..., n_bodies]`."""
     is_known: Array
-    """Whether a moment went before, `[..., n_bodies]`."""
+    """Whether there was a previous step, `[..., n_bodies]`."""
     elastic: Array
-    """The wrench without loss a moment before, `[..., n_bodies, 6]`, and what loss added."""
+    """The wrench without damping in the previous step, N and N mm, `[..., n_bodies, 6]`."""
     loss: Array
+    """The part of the wrench that damping added, N and N mm, `[..., n_bodies, 6]`."""
 
 
 class HeldReading(NamedTuple):
-    """What a gel does at a moment, with friction: what `step` returns."""
+    """The output of a gel at a time step, with friction: the result of `step`. All numbers are
+    `simulated`.
+    """
 
     pressure_kpa: Array
     """Pressure at each port, kPa, `[..., n_taxels]`."""
     wrench: Array
-    """Force on the gel, N, and torque about the top of its middle, N mm, `[..., 6]`."""
+    """Force on the gel, N, and torque about the top of the gel's middle, N mm, `[..., 6]`."""
     gap_mm: Array
-    """As `Reading` has it, `[..., n_bodies]`."""
+    """The gap as in `Reading`, mm, `[..., n_bodies]`."""
     wrench_of_bodies: Array
-    """What each body does by itself, `[..., n_bodies, 6]`."""
+    """The part of each body in the wrench, `[..., n_bodies, 6]`."""
+    slip_mm_per_s: Array
+    """How fast each body slips over the gel, mm/s, along x and y of the gel, `[..., n_bodies, 2]`: 0
+    while it sticks."""
 
 
 def friction(
@@ -102,10 +115,21 @@ def friction(
     retardation_s: float = 0.0,
     like: Array | None = None,
 ) -> Friction:
-    """Friction with Coulomb's coefficient, 0 or more, on the gel that `load` takes, and the gel's
-    loss, as `Coupling` has them.
+    """Friction and damping of a gel, as those of `Coupling`.
 
-    Raises `Error` for a number that cannot be.
+    Args:
+        source: the surrogate of the gel, as `load` takes it.
+        coefficient: Coulomb's coefficient of friction, 0 or more.
+        retardation_s: time constant of the gel's damping, s, 0 or more.
+        like: an array of the library, precision and device of the result; NumPy in single precision
+            unless given.
+
+    Returns:
+        The friction, for `step`.
+
+    Raises:
+        Error: for a number that is negative or not finite, and for a source that is not a surrogate
+            of the gel.
     """
     for field, number in (("coefficient", coefficient), ("retardation_s", retardation_s)):
         if not 0.0 <= number < math.inf:
@@ -135,8 +159,16 @@ def friction(
 
 
 def held(gel: Gel, position_mm: Array) -> Held:
-    """Gels that remember nothing, for bodies at poses `[..., n_bodies, 3]`. To let go of the bodies
-    of some sensors, put parts of this in the place of theirs, by `where`."""
+    """The initial state of gels that hold nothing. To let the sensors of chosen worlds release
+    their bodies, replace their part of the state by this one with `where`.
+
+    Args:
+        gel: the result of `load`.
+        position_mm: positions of the bodies, `[..., n_bodies, 3]`; only the shape counts.
+
+    Returns:
+        The state, for `step`.
+    """
     xp = namespace("gel", gel.points_mm)
     zero = xp.astype(0.0 * position_mm[..., 0], gel.points_mm.dtype)
     none = zero > 1.0
@@ -157,14 +189,24 @@ def step(
     position_mm: Array,
     rotation: Array | None = None,
 ) -> tuple[Held, HeldReading]:
-    """One more moment of bodies that gels hold with friction and loss, `since_previous_s` after the
-    one before: what gels then remember, and what they do. Each body is the same one in each moment.
+    """One time step of bodies on gels, with friction and damping. A body keeps its index in all
+    time steps.
 
-    - `before`: what gels remember; at first what `held` returns.
-    - `since_previous_s`: one time for all, or `[...]`, s, above 0.
-    - The others are those of `read`.
+    Args:
+        gel: the result of `load`.
+        friction: the result of `friction`.
+        before: the state after the previous time step; at first the result of `held`.
+        since_previous_s: time since the previous time step, s, above 0: one number for all sensors,
+            or `[...]`.
+        shapes: as in `read`.
+        position_mm: as in `read`.
+        rotation: as in `read`.
 
-    Raises `Error`, as `read` does.
+    Returns:
+        The new state, and the output of the gels.
+
+    Raises:
+        Error: as `read` does.
     """
     xp = namespace("gel", gel.points_mm)
     shapes, position_mm, rotation = placed(xp, gel, shapes, position_mm, rotation)
@@ -175,7 +217,7 @@ def step(
     position_mm = position_mm + zero[..., None]
     rotation = rotation + zero[..., None, None]
     foot = _footprint(xp, gel, friction, near.share)
-    now, wrench = _hold(xp, gel, friction, before, foot, apart, position_mm, rotation)
+    now, wrench, slip_mm = _hold(xp, gel, friction, before, foot, apart, position_mm, rotation)
     pulls_kpa = _pulled_kpa(xp, friction, foot, now.force_n)
     now, wrench = _lose(xp, friction, before, now, since_previous_s, wrench)
     reading = HeldReading(
@@ -183,23 +225,26 @@ def step(
         xp.sum(wrench, axis=-2),
         near.gap_mm,
         wrench,
+        slip_mm / for_bodies(since_previous_s),
     )
     return now, reading
 
 
 class _Footprint(NamedTuple):
-    """Where each body is carried."""
+    """The area in which the gel carries each body."""
 
     touches: Array
     part: Array
-    """How much of its area each point carries, `[..., n_bodies, n_points]`."""
+    """Fraction of its area with which each point carries the body, `[..., n_bodies, n_points]`."""
     area_mm2: Array
     thickness_mm: Array
-    """Of the gel that is left under it."""
+    """Thickness of the gel that is left under the body, mm."""
 
 
 def _shared(xp: Any, gel: Gel, share: Array, together: Reading) -> Array:
-    """The wrench of all bodies, shared among them as each would have it by itself."""
+    """The wrench of all bodies, divided among them in proportion to their wrenches when each
+    presses alone.
+    """
     if share.shape[-3] == 1:
         return together.wrench[..., None, :]
     apart = wrench_of(xp, gel, share)
@@ -217,7 +262,7 @@ def _footprint(xp: Any, gel: Gel, friction: Friction, share: Array) -> _Footprin
     inside = depth / xp.where(touches, deepest, 1.0)[..., None]
     part = xp.clip((inside - _CARRYING) / _CHANGE + 0.5, 0.0, 1.0)
     part = xp.where(touches[..., None], part, 0.0)
-    # Of points that are equally deep the last one counts.
+    # Of points that are equally deep, the last one counts.
     order = friction.order
     last = xp.max(xp.where(depth == deepest[..., None], order, 0.0), axis=-1)
     is_last = order == last[..., None]
@@ -235,8 +280,8 @@ def _hold(
     wrench: Array,
     position_mm: Array,
     rotation: Array,
-) -> tuple[Held, Array]:
-    """What friction holds, and the wrench of each body with it."""
+) -> tuple[Held, Array, Array]:
+    """The friction, the wrench of each body with it, and how far each body has slipped, mm."""
     holds = foot.touches & (wrench[..., 2] < 0.0)
     down_n = xp.where(holds, wrench[..., 2], -1.0)
     x_mm, y_mm = -wrench[..., 4] / down_n, wrench[..., 3] / down_n
@@ -258,6 +303,8 @@ def _hold(
     needed_n = root(xp, force_n[0] ** 2 + force_n[1] ** 2 + arm_n**2)
     slips = needed_n > limit_n
     kept = xp.where(slips, limit_n / xp.where(slips, needed_n, 1.0), 1.0)
+    slipped = xp.where(holds, 1.0 - kept, 0.0) / along
+    slip_mm = xp.stack([slipped * part for part in force_n], axis=-1)
     kept = xp.where(holds, kept, 0.0)
     force_n, torque_n_mm = [kept * part for part in force_n], kept * torque_n_mm
     spin_n_mm = x_mm * force_n[1] - y_mm * force_n[0] + torque_n_mm
@@ -270,7 +317,7 @@ def _hold(
         force_n=xp.stack(force_n, axis=-1),
         torque_n_mm=torque_n_mm,
     )
-    return now, xp.where(foot.touches[..., None], wrench, 0.0) + added
+    return now, xp.where(foot.touches[..., None], wrench, 0.0) + added, slip_mm
 
 
 def _moved(
@@ -282,8 +329,9 @@ def _moved(
     x_mm: Array,
     y_mm: Array,
 ) -> tuple[list[Array], Array]:
-    """How far a body's point at a place of the surface has moved along it, mm, and how far it has
-    turned about the vertical, radians."""
+    """Displacement along the surface, mm, of the point of a body that is at a location of the
+    surface, and rotation of the body about the vertical, radians, since the previous time step.
+    """
     place_mm = [gel.center_mm[0] + x_mm, gel.center_mm[1] + y_mm, gel.center_mm[2] + 0.0 * x_mm]
     away_mm = [place_mm[row] - before.position_mm[..., row] for row in range(3)]
     own_mm = [
@@ -302,7 +350,7 @@ def _moved(
         ]
         for row in range(3)
     ]
-    # The turn's axis times twice its sine, and twice its cosine.
+    # The axis of the rotation, multiplied by twice the sine of the angle, and twice the cosine.
     sines = [turn[2][1] - turn[1][2], turn[0][2] - turn[2][0], turn[1][0] - turn[0][1]]
     sine = root(xp, sines[0] ** 2 + sines[1] ** 2 + sines[2] ** 2)
     cosine = turn[0][0] + turn[1][1] + turn[2][2] - 1.0
@@ -313,8 +361,10 @@ def _moved(
 
 
 def _pulled_kpa(xp: Any, friction: Friction, foot: _Footprint, force_n: Array) -> Array:
-    """What pulls along the surface do at the ports, `[..., n_bodies, n_taxels]`: that of a layer as
-    high as the gel that is left, pulled at all places that carry the body."""
+    """Pressures at the ports due to friction along the surface, `[..., n_bodies, n_taxels]`: those
+    of a layer as high as the gel that is left under the body, with the force spread over all points
+    that carry it.
+    """
     height_mm = xp.where(foot.touches, foot.thickness_mm, 1.0)
     n_entries = friction.kernel.shape[0]
     entries = friction.away_mm / (_STEP * height_mm[..., None, None])
@@ -339,9 +389,10 @@ def _lose(
     since_previous_s: Array | float,
     wrench: Array,
 ) -> tuple[Held, Array]:
-    """Adds the gel's loss, `t dF/dt`: a gel does not pull at what leaves it."""
-    lead = friction.retardation_s / since_previous_s
-    lead = lead[..., None, None] if len(getattr(lead, "shape", ())) else lead
+    """Adds the damping, `t dF/dt`. If the sum would pull at a body, the wrench is 0: a gel does not
+    adhere.
+    """
+    lead = friction.retardation_s / for_bodies(since_previous_s)
     loss = xp.where(before.is_known[..., None], lead * (wrench - before.elastic), 0.0)
     lossy = wrench + loss
     known = xp.ones_like(before.torque_n_mm + wrench[..., 2]) > 0.0
@@ -349,8 +400,15 @@ def _lose(
     return now, xp.where(lossy[..., 2:3] > 0.0, 0.0, lossy)
 
 
+def for_bodies(since_s: Array | float) -> Array | float:
+    """Times of sensors, `[...]`, or one for all, for arrays `[..., n_bodies, n]`."""
+    if isinstance(since_s, float) or not len(getattr(since_s, "shape", ())):
+        return since_s
+    return since_s[..., None, None]
+
+
 def _shear_modulus_kpa(material: dict[str, Any]) -> float:
-    """Of each model at small strain."""
+    """The shear modulus of a material model at small strain, kPa."""
     if "shear_modulus_kpa" in material:
         return float(material["shear_modulus_kpa"])
     if "terms" in material:
@@ -359,8 +417,10 @@ def _shear_modulus_kpa(material: dict[str, Any]) -> float:
 
 
 def _kernel(poissons_ratio: float) -> _Floats:
-    """Pressure on the base of an elastic layer that is bonded to it and pulled along its surface at
-    a point, over the distance: the sum of all waves (a Hankel transform of the first order)."""
+    """Pressure on the base of an elastic layer that is bonded to the base and pulled along its
+    surface at a point, over the distance: the sum over all wave numbers (a Hankel transform of the
+    first order).
+    """
     wave = _WAVE_STEP * np.arange(1, int(_SHORTEST_WAVE / _WAVE_STEP) + 1)
     sinh, cosh = np.sinh(wave), np.cosh(wave)
     compressible = 1.0 - 2.0 * poissons_ratio
@@ -368,7 +428,7 @@ def _kernel(poissons_ratio: float) -> _Floats:
     pressure = 2.0 / 3.0 * (1.0 + poissons_ratio) * (compressible * sinh + wave * cosh) / below
     part = pressure * wave * _WAVE_STEP / (2.0 * np.pi)
     distance = _STEP * np.arange(int(_FURTHEST / _STEP) + 1)
-    # The Bessel function of the first order by its integral, whose sum converges at once.
+    # The Bessel function of the first order by its integral, whose sum converges quickly.
     angle = np.pi * (np.arange(_N_NODES) + 0.5) / _N_NODES
     found = np.zeros(len(distance))
     for own, amount in zip(wave, part):

@@ -1,4 +1,4 @@
-"""The fast gel as arrays: where its surface is looked at, and its networks."""
+"""The surrogate of the gel as arrays: the points where it evaluates distances, and its networks."""
 
 import os
 from typing import Any, NamedTuple
@@ -14,86 +14,94 @@ from ._namespace import Array
 _Floats = npt.NDArray[np.float64]
 
 N_LEVELS = 3
-# Heights of the levels at which distances are taken, and how deep at most points count, mm, for
+# Heights of the levels at which distances are evaluated, and the largest depth that counts, mm, for
 # points 2 mm apart; in proportion for points that are farther apart.
 _LEVELS_MM = (0.0, -1.5, -3.0)
 _DEEPEST_MM = 4.0
 _SPACING_MM = 2.0
-# Gaps up to which something may touch between points, and beyond which nothing does, in distances
-# of points.
+# Gap up to which a contact counts wholly, and gap from which nothing touches, in spacings of
+# points: a body may touch between points.
 _TOUCHED = (0.05, 0.25)
-# What outputs of 1 mean: kPa; N and N mm.
+# Pressure, kPa, and wrench, N and N mm, that an output of 1 of the networks stands for.
 _PRESSURE_KPA = 50.0
 _WRENCH = (1.0, 1.0, 10.0, 30.0, 30.0, 10.0)
-# What the gel's edges do falls by e over this part of its height.
+# The influence of the gel's edges decays by a factor of e over this fraction of the gel's height.
 _EDGE_DECAY = 0.5
-# A part of a spacing that is none.
+# Fractions of a spacing below this count as 0.
 _ROUNDING = 1e-6
-# Weights of all ports together at most: they take 0.5 GB in single precision.
+# Largest number of weights of all ports together: they take 0.5 GB in single precision.
 _MOST_WEIGHTS = 2**27
 
 
 class Layer(NamedTuple):
-    """A linear layer."""
+    """A linear layer of a network."""
 
     weight: Array
-    """`[n_inputs, n_outputs]`"""
+    """The weights, `[n_inputs, n_outputs]`."""
     bias: Array
-    """`[n_outputs]`"""
+    """The biases, `[n_outputs]`."""
 
 
 class Network(NamedTuple):
-    """A network that looks at each point by itself, then at all points that a row is near."""
+    """A network that processes each point alone, then, for each row, all points near the row."""
 
     point: Layer
-    """From the levels of a point to its features."""
+    """The layer from the levels of a point to its features."""
     rows: Array
-    """From the features of all points to the first hidden units of each row,
-    `[n_points * n_features, n_rows * n_hidden]`."""
+    """The weights from the features of all points to the first hidden units of each row,
+    `[n_points * n_features, n_rows * n_hidden]`.
+    """
     bias: Array
-    """`[n_rows, n_hidden]`"""
+    """The biases of the first hidden units, `[n_rows, n_hidden]`."""
     layers: tuple[Layer, ...]
-    """Those after that, shared by all rows; the last one has `n_outputs`."""
+    """The following layers, shared by all rows; the last one has `n_outputs`."""
     near: Array
-    """1 where a row looks at a point, `[n_points, n_rows]`."""
+    """1 where a row sees a point, else 0, `[n_points, n_rows]`."""
     unit: Array
-    """What outputs of 1 mean, `[n_rows * n_outputs]`."""
+    """The value that an output of 1 stands for, `[n_rows * n_outputs]`."""
 
 
 class Gel(NamedTuple):
-    """A fast gel as arrays, all of one library: what `load` returns. It is a tuple, of which the
-    libraries know what to do: it may be an argument of functions that are compiled, and gradients
-    may be taken with respect to it.
+    """A surrogate of the gel as arrays, all of one library: the result of `load`. It is a tuple, so
+    that it may be an argument of compiled functions, and gradients may be taken with respect to it.
     """
 
     points_mm: Array
-    """Where the surface is looked at, in the gel's frame, `[3, n_points]`; the points of the first
-    grid first."""
+    """The points of the surface at which distances are evaluated, in the gel's frame,
+    `[3, n_points]`; the points of the first grid come first.
+    """
     levels_mm: Array
-    """Heights of the levels above the points, `[n_points, 3]`."""
+    """Heights of the levels relative to the points, `[n_points, 3]`."""
     deepest_mm: Array
-    """How deep points count at most, `[n_points, 1]`."""
+    """The largest depth that counts at each point, `[n_points, 1]`."""
     highest_mm: Array
     """Height of the highest point of each point's grid, `[n_points]`, or `[1]` for all."""
     touched_mm: Array
-    """Gaps at which something touches altogether and not at all, `[2]`."""
+    """Gap up to which a contact counts wholly, and gap from which nothing touches, `[2]`."""
     pressure: Network
-    """To pressures at the ports."""
+    """The network of the pressures at the ports."""
     wrench: Network
-    """To force and torque, from the points of the first grid."""
+    """The network of force and torque, from the points of the first grid."""
     ports_mm: Array
-    """Where the ports are in the gel's plane, `[n_taxels, 2]`."""
+    """Positions of the ports in the plane of the gel, `[n_taxels, 2]`."""
     center_mm: Array
-    """The top of the gel's middle, about which torques count, `[3]`."""
+    """The top of the gel's middle, the reference point of torques, `[3]`."""
 
 
 def load(source: FastGel | str | os.PathLike[str] | bytes, *, like: Array | None = None) -> Gel:
-    """A fast gel as arrays: of a `FastGel`, of a file that `twintac fast train` has made, or of the
-    bytes of such a file. Arrays are of NumPy, in single precision; or of the library, the precision
-    and the device of the array `like`.
+    """Loads a surrogate of the gel as arrays.
 
-    Raises `Error` with the file if it is none, and for more ports than fit into one matrix (about
-    2,000 on PhysTac's gel).
+    Args:
+        source: a `FastGel`, a file that `twintac fast train` has made, or the bytes of such a file.
+        like: an array of the library, precision and device of the result; NumPy in single precision
+            unless given.
+
+    Returns:
+        The surrogate, for `read` and `step`.
+
+    Raises:
+        Error: with the file if it is not a surrogate of the gel, and for more ports than fit into
+            one matrix (about 2,000 on PhysTac's gel).
     """
     file = read_file(source)
     try:
@@ -101,7 +109,7 @@ def load(source: FastGel | str | os.PathLike[str] | bytes, *, like: Array | None
     except (KeyError, IndexError, TypeError, ValueError) as error:
         if isinstance(error, Error):
             raise
-        raise Error(f"this fast twin cannot be read: {error!r}") from error
+        raise Error(f"this surrogate of the gel cannot be read: {error!r}") from error
     return convert(gel, np.zeros(0, np.float32) if like is None else like)
 
 
@@ -113,23 +121,28 @@ class _Grid(NamedTuple):
     first_point: int
 
     def point(self, i: int, j: int) -> int | None:
-        """Number of a point among those of all grids; `None` beside the grid."""
+        """Index of a point among the points of all grids; `None` outside the grid."""
         is_there = 0 <= i < self.n[0] and 0 <= j < self.n[1]
         return self.first_point + j * self.n[0] + i if is_there else None
 
     def cell(self, at_mm: _Floats) -> tuple[int, int, _Floats]:
-        """Column and row of a place, and how far behind them it lies, in parts of the spacing."""
+        """Column and row of the cell that contains a location, and the offset of the location in
+        the cell, as fractions of the spacing.
+        """
         cells = (at_mm - self.first_mm) / self.spacing_mm + 1e-9
         corner = np.floor(cells)
         return int(corner[0]), int(corner[1]), cells - corner
 
     def has(self, at_mm: _Floats) -> bool:
-        """Whether a point, or one that would follow, is above a place."""
+        """Whether a point of the grid, or of its continuation beyond the border, is above a
+        location.
+        """
         return bool(np.hypot(*self.cell(at_mm)[2]) < _ROUNDING)
 
     def height_mm_at(self, at_mm: _Floats) -> float:
-        """Height of the gel at a place, linear between points; beside the grid that of its
-        border."""
+        """Height of the gel at a location, mm, linear between points; outside the grid the height
+        at its border.
+        """
         i, j, part = self.cell(at_mm)
         i0, i1 = (min(max(i + step, 0), self.n[0] - 1) for step in (0, 1))
         j0, j1 = (min(max(j + step, 0), self.n[1] - 1) for step in (0, 1))
@@ -178,7 +191,7 @@ def _gel(file: File) -> Gel:
 
 
 def _pressure(file: File, grids: list[_Grid]) -> Network:
-    """The network of pressures: of all taxels together where there is one, else of patches."""
+    """The network of the pressures: of all taxels together if there is one, else of patches."""
     n_ports = len(file.header["ports_mm"])
     if file.layers("taxels"):
         return _of_all_points(file, "taxels", grids[0], np.full(n_ports, _PRESSURE_KPA))
@@ -186,7 +199,7 @@ def _pressure(file: File, grids: list[_Grid]) -> Network:
 
 
 def _of_all_points(file: File, name: str, grid: _Grid, unit: _Floats) -> Network:
-    """A network of one row, which looks at all points of a grid."""
+    """A network of one row that sees all points of a grid."""
     point, first, *rest = (Layer(*layer) for layer in file.layers(name))
     n_inputs = len(grid.height_mm) * len(point.bias)
     return Network(
@@ -200,7 +213,7 @@ def _of_all_points(file: File, name: str, grid: _Grid, unit: _Floats) -> Network
 
 
 def _of_patches(file: File, grids: list[_Grid]) -> Network:
-    """A network of a row for each port, which looks at the points of the port's patch."""
+    """A network with a row for each port; the row sees the points of the port's patch."""
     point, first, *rest = (Layer(*layer) for layer in file.layers("pressure"))
     offsets = [(int(i), int(j)) for i, j in file.header["layout"]["patch"]["offsets"]]
     ports_mm = np.array(file.header["ports_mm"], np.float64).reshape(-1, 2)
@@ -220,7 +233,8 @@ def _of_patches(file: File, grids: list[_Grid]) -> Network:
             if (number := grid.point(i + offset[0], j + offset[1])) is not None:
                 rows[number, :, port] = weights
                 near[number, port] = 1.0
-    # What describes a port does not change: it goes into the bias. How coarse the mesh was is 0.
+    # The features of a port are constant, so they go into the bias. The feature of the mesh's
+    # coarseness is 0.
     about = np.stack([_describe(file.header, grids[0], at_mm) for at_mm in ports_mm])
     return Network(
         point=point,
@@ -235,8 +249,10 @@ def _of_patches(file: File, grids: list[_Grid]) -> Network:
 def _patch(
     part: _Floats, offsets: list[tuple[int, int]], own: _Floats
 ) -> dict[tuple[int, int], _Floats]:
-    """Weights of a port this far behind its cell by the points' offsets from the cell: those of the
-    patch, or linear between those of its four corners."""
+    """The weights of a port, by the offsets of points from the port's cell: those of the patch if
+    the port is at a point, else interpolated linearly between the patches at the cell's four
+    corners. `part` is the offset of the port in its cell, as fractions of the spacing.
+    """
     if np.hypot(*part) < _ROUNDING:
         return dict(zip(offsets, own))
     found: dict[tuple[int, int], _Floats] = {}
@@ -250,8 +266,10 @@ def _patch(
 
 
 def _describe(header: dict[str, Any], grid: _Grid, at_mm: _Floats) -> _Floats:
-    """A place of the gel's base: how close each edge is, and how much lower the gel is than at its
-    highest, above the place and to each side. `[13]`"""
+    """Features of a location at the base of the gel, `[13]`: the proximity of each edge and its
+    square, and how much lower the gel is than at its highest point, above the location and on each
+    side.
+    """
     around = header["layout"]["surroundings"]
     decay_mm = _EDGE_DECAY * around["height_mm"]
     near, sides = [], []

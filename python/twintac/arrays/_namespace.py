@@ -1,4 +1,4 @@
-"""Which library arrays are of, and what the other files need of all of them."""
+"""The library of an array, and functions that the other files use with all libraries."""
 
 import importlib
 import math
@@ -11,14 +11,14 @@ Array = Any
 
 
 def refuse(field: str, problem: str, expected: str) -> Error:
-    """The error of an argument that cannot be used."""
+    """The error for an argument that cannot be used."""
     return Error(f"`{field}` {problem}, expected {expected}", field=field)
 
 
 def namespace(field: str, array: Array) -> Any:
-    """The functions of the library that an array is of.
+    """The functions of the library of an array.
 
-    Raises `Error` for what is no array, and where `array-api-compat` is needed and missing.
+    Raises `Error` if the argument is no array, and if `array-api-compat` is needed and missing.
     """
     if hasattr(array, "__array_namespace__"):
         return array.__array_namespace__()
@@ -41,7 +41,9 @@ def check_same_library(expected: Any, **arrays: Array) -> None:
 
 
 def check_shape(field: str, array: Array, *last: int) -> None:
-    """Raises `Error` unless the last dimensions of an array are these, behind that of bodies."""
+    """Raises `Error` unless the array has a dimension for bodies, followed by exactly these
+    dimensions.
+    """
     shape = tuple(array.shape)
     if len(shape) < len(last) + 1 or shape[len(shape) - len(last) :] != last:
         wanted = ", ".join(str(length) for length in last)
@@ -49,9 +51,9 @@ def check_shape(field: str, array: Array, *last: int) -> None:
 
 
 def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
-    """The shape that all of these are stretched to.
+    """The common shape to which all of these shapes broadcast.
 
-    Raises `Error`, which names the first that does not fit those before it.
+    Raises `Error`, which names the first shape that does not fit the shapes before it.
     """
     found: tuple[int, ...] = ()
     for field, shape in shapes.items():
@@ -65,13 +67,13 @@ def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def root(xp: Any, square: Array) -> Array:
-    """The square root of what is not negative; its slope at 0 is 0 instead of infinite."""
-    is_zero = square <= 0.0  # what is no number stays none
+    """The square root; its derivative at 0 is 0 instead of infinite."""
+    is_zero = square <= 0.0  # NaN stays NaN
     return xp.where(is_zero, 0.0, xp.sqrt(xp.where(is_zero, 1.0, square)))
 
 
 def times(xp: Any, rows: Array, matrix: Array) -> Array:
-    """Rows `[..., n]` times a matrix `[n, m]`, as one product: `[..., m]`."""
+    """Rows `[..., n]` multiplied by a matrix `[n, m]`, as one matrix product: `[..., m]`."""
     leading, n = tuple(rows.shape[:-1]), rows.shape[-1]
     product = xp.matmul(xp.reshape(rows, (math.prod(leading), n)), matrix)
     return xp.reshape(product, (*leading, matrix.shape[-1]))

@@ -1,4 +1,4 @@
-"""Poses as simulators have them."""
+"""Conversions of the poses that simulators have."""
 
 from typing import Any
 
@@ -6,11 +6,19 @@ from ._namespace import Array, check_same_library, namespace, refuse
 
 
 def rotation_of(quaternion: Array, *, is_scalar_first: bool = False) -> Array:
-    """Matrices `[..., 3, 3]` of quaternions `[..., 4]`, of any length but 0: `(x, y, z, w)`, as
-    Warp, Newton and this package have them; `(w, x, y, z)`, as MuJoCo, Isaac Lab, ManiSkill and
-    Genesis, with `is_scalar_first`.
+    """Rotation matrices of quaternions.
 
-    Raises `Error` for another shape.
+    Args:
+        quaternion: quaternions `[..., 4]`, of any length but 0: `(x, y, z, w)`, as in Warp, Newton
+            and this package.
+        is_scalar_first: if true, quaternions are `(w, x, y, z)`, as in MuJoCo, Isaac Lab, ManiSkill
+            and Genesis.
+
+    Returns:
+        Matrices `[..., 3, 3]`.
+
+    Raises:
+        Error: for another shape.
     """
     xp = namespace("quaternion", quaternion)
     if tuple(quaternion.shape[-1:]) != (4,):
@@ -29,14 +37,22 @@ def rotation_of(quaternion: Array, *, is_scalar_first: bool = False) -> Array:
 def gel_from_body(
     gel_position_m: Array, gel_rotation: Array, body_position_m: Array, body_rotation: Array
 ) -> tuple[Array, Array]:
-    """Poses of bodies in the frames of gels, as `read` takes them, from poses in the world: places
-    in metres, and matrices. Those of gels are `[..., 3]` and `[..., 3, 3]`, those of bodies `[...,
-    n_bodies, 3]` and `[..., n_bodies, 3, 3]`. Returns mm and matrices.
+    """Poses of bodies in the frames of gels, as `read` takes them, from poses in the world.
 
-    Places are subtracted before they are scaled: where worlds stand side by side, single precision
-    tells no less than the distance to the world's origin lets it.
+    Positions are subtracted before they are scaled to mm. With many worlds side by side, the
+    precision is then limited only by the distance to the world's origin.
 
-    Raises `Error` for arrays of several libraries.
+    Args:
+        gel_position_m: positions of the gels, m, `[..., 3]`.
+        gel_rotation: rotation matrices of the gels, `[..., 3, 3]`.
+        body_position_m: positions of the bodies, m, `[..., n_bodies, 3]`.
+        body_rotation: rotation matrices of the bodies, `[..., n_bodies, 3, 3]`.
+
+    Returns:
+        Positions, mm, `[..., n_bodies, 3]`, and rotation matrices `[..., n_bodies, 3, 3]`.
+
+    Raises:
+        Error: for arrays of several libraries.
     """
     xp: Any = namespace("gel_position_m", gel_position_m)
     check_same_library(

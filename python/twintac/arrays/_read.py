@@ -1,4 +1,4 @@
-"""From poses of shapes to what a gel does."""
+"""From poses of shapes to the output of a gel."""
 
 from typing import Any, NamedTuple
 
@@ -9,33 +9,40 @@ from ._shapes import Shapes
 
 
 class Reading(NamedTuple):
-    """What a gel does at the moment: what `read` returns. All is `simulated`."""
+    """The output of a gel for given poses: the result of `read`. All numbers are `simulated`."""
 
     pressure_kpa: Array
     """Pressure at each port, kPa, `[..., n_taxels]`."""
     wrench: Array
-    """Force on the gel, N, and torque about the top of its middle, N mm, `[..., 6]`."""
+    """Force on the gel, N, and torque about the top of the gel's middle, N mm, `[..., 6]`."""
     gap_mm: Array
-    """How far each body is from the nearest point of the gel's surface, mm, less than 0 where it is
-    in the gel, `[..., n_bodies]`. It has a slope where nothing touches, which pressures have not:
-    it leads a body to the gel."""
+    """Distance of each body from the nearest point of the gel's surface, mm, negative inside the
+    gel, `[..., n_bodies]`. Its gradient is not 0 where nothing touches, in contrast to that of the
+    pressures: it leads a body to the gel.
+    """
 
 
 def read(gel: Gel, shapes: Shapes, position_mm: Array, rotation: Array | None = None) -> Reading:
-    """What gels do under rigid shapes at poses in their frames: the pressure at each port, force
-    and torque, as `FastReader.read` has them, of as many sensors as leading dimensions say.
+    """Pressures, force and torque of gels under rigid shapes, as `FastReader.read` computes them,
+    for as many sensors as the leading dimensions say.
 
-    - `gel`: what `load` returns.
-    - `shapes`: `[..., n_bodies]`; their leading dimensions may be fewer, or 1.
-    - `position_mm`: the origins of the bodies in the gel's frame, `[..., n_bodies, 3]`, mm. A body
-      that is far away touches nothing.
-    - `rotation`: matrices from the bodies' frames to the gel's, `[..., n_bodies, 3, 3]`; upright
-      unless given. `rotation_of` makes them of quaternions.
+    The function uses arrays alone. All of them are of one library and stay on their device, and
+    gradients may be taken through all results. NaN in the inputs gives NaN in the results.
 
-    It is a function of arrays alone: all are of one library, and stay on their device; gradients
-    may be taken through all that it returns. What is no number makes readings that are none.
+    Args:
+        gel: the result of `load`.
+        shapes: shapes of the bodies, `[..., n_bodies]`; their leading dimensions may be fewer, or
+            1.
+        position_mm: origins of the bodies in the gel's frame, mm, `[..., n_bodies, 3]`. A body that
+            is far away touches nothing.
+        rotation: matrices from the bodies' frames to the gel's frame, `[..., n_bodies, 3, 3]`;
+            upright unless given. `rotation_of` makes them from quaternions.
 
-    Raises `Error`, whose `field` is the argument of another shape or library.
+    Returns:
+        Pressures, wrench and gaps.
+
+    Raises:
+        Error: for an argument of another shape or library; its `field` names the argument.
     """
     xp = namespace("gel", gel.points_mm)
     shapes, position_mm, rotation = placed(xp, gel, shapes, position_mm, rotation)
@@ -72,25 +79,27 @@ def placed(
 
 
 def reading_of(xp: Any, gel: Gel, share: Array, gap_mm: Array) -> Reading:
-    """What the networks make of what is near."""
+    """The output of the networks for the proximity of bodies."""
     pressure_kpa = _touched(xp, gel, share) * _outputs(xp, gel.pressure, share)
     return Reading(pressure_kpa, wrench_of(xp, gel, share), gap_mm)
 
 
 def wrench_of(xp: Any, gel: Gel, share: Array) -> Array:
-    """Force and torque of what is near, `[..., 6]`."""
+    """Force and torque for the proximity of bodies, `[..., 6]`."""
     return _touched(xp, gel, share) * _outputs(xp, gel.wrench, share)
 
 
 def _touched(xp: Any, gel: Gel, share: Array) -> Array:
-    """How far something touches, from 0 to 1, `[..., 1]`: networks are never quite silent."""
+    """The degree of contact, 0 to 1, `[..., 1]`. It multiplies the outputs, which would not be
+    exactly 0 without contact.
+    """
     nearest_mm = REACH_MM * (1.0 - xp.max(share[..., 0], axis=-1))
     near_mm, far_mm = gel.touched_mm[0], gel.touched_mm[1]
     return xp.clip((far_mm - nearest_mm) / (far_mm - near_mm), 0.0, 1.0)[..., None]
 
 
 def _outputs(xp: Any, network: Network, share: Array) -> Array:
-    """`[..., n_rows * n_outputs]`"""
+    """The outputs of a network, `[..., n_rows * n_outputs]`."""
     n_points, n_rows = network.near.shape
     share = share[..., :n_points, :]
     leading = tuple(share.shape[:-2])
@@ -101,13 +110,13 @@ def _outputs(xp: Any, network: Network, share: Array) -> Array:
     hidden = xp.reshape(hidden, (*leading, *network.bias.shape)) + network.bias
     for weight, bias in network.layers:
         hidden = times(xp, _silu(xp, hidden), weight) + bias
-    # A row with nothing near it is silent.
+    # A row without a near body gives 0.
     n_near = times(xp, xp.astype(share[..., 0] > 0.0, share.dtype), network.near)
     hidden = xp.where(n_near[..., None] == 0.0, 0.0, hidden)
     return network.unit * xp.reshape(hidden, (*leading, n_rows * hidden.shape[-1]))
 
 
 def _silu(xp: Any, value: Array) -> Array:
-    """The sigmoid linear unit `x / (1 + e⁻ˣ)`, written such that nothing overflows."""
+    """The sigmoid linear unit `x / (1 + e⁻ˣ)`, written so that nothing overflows."""
     half = 0.5 * value
     return half + half * xp.tanh(half)

@@ -1,4 +1,4 @@
-"""Any shape, by samples of its distance on a grid."""
+"""Arbitrary shapes, by samples of their signed distance on a grid."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -11,7 +11,8 @@ from ._namespace import Array, root
 
 _Floats = npt.NDArray[np.float64]
 
-# The same samples as Rust's: their distance, cells across the thinnest body, samples at most.
+# The samples are those of Rust: their spacing, the cells across the thinnest body, the largest
+# number of samples.
 _SPACING_MM = 0.5
 _CELLS_OF_THICKNESS = 6.0
 _MOST_SAMPLES = 4e6
@@ -19,19 +20,20 @@ _REACH_MM = 2.0
 
 
 class Samples(NamedTuple):
-    """Distances of shapes at the corners of cells. Those of all shapes lie one behind the other;
-    each body has a part of them."""
+    """Distances of shapes at the corners of the cells of grids. One array holds the samples of all
+    shapes one after the other; each body uses a part of it.
+    """
 
     distance_mm: Array
-    """Along z first, then y, `[n_samples]`."""
+    """The distances, mm, along z first, then y, `[n_samples]`."""
     first: Array
-    """Where those of a body begin, `[..., n_bodies]`."""
+    """Index of the first sample of each body, `[..., n_bodies]`."""
     n_cells: Array
-    """Along each axis, whole numbers, `[..., n_bodies, 3]`."""
+    """Numbers of cells along each axis, integers, `[..., n_bodies, 3]`."""
     low_mm: Array
-    """The first corner in the shape's frame, `[..., n_bodies, 3]`."""
+    """The first corner in the shape's frame, mm, `[..., n_bodies, 3]`."""
     cells_per_mm: Array
-    """`[..., n_bodies, 3]`"""
+    """Cells per mm along each axis, `[..., n_bodies, 3]`."""
 
     def as_precise(self, xp: Any, precision: Any) -> "Samples":
         """The same lengths in another precision."""
@@ -43,8 +45,9 @@ class Samples(NamedTuple):
 
     @staticmethod
     def stack(all: "Sequence[Samples | None]", leading: tuple[int, ...]) -> "Samples | None":
-        """Those of several shapes along a new first dimension; a shape that has none gets one
-        sample, which nobody reads. Equal samples are kept once."""
+        """The samples of several shapes along a new first dimension. A shape without samples gets
+        one cell, which nothing reads. Equal samples are stored once.
+        """
         if not any(own is not None for own in all):
             return None
         nothing = Samples(
@@ -70,7 +73,7 @@ class Samples(NamedTuple):
 
 
 def sampled(shape: Shape) -> tuple[Samples, _Floats]:
-    """Samples of a shape, and the corners of the box that holds it, mm, `[2, 3]`."""
+    """Samples of a shape, and the corners of its bounding box, mm, `[2, 3]`."""
     low_mm, high_mm = bounds_mm = shape.bounds_mm
     volume_mm3 = np.prod(high_mm - low_mm + 2.0 * _REACH_MM)
     even_mm = np.full(3, max(np.cbrt(volume_mm3 / _MOST_SAMPLES), _SPACING_MM))
@@ -93,8 +96,10 @@ def sampled(shape: Shape) -> tuple[Samples, _Floats]:
 
 
 def sampled_mm(xp: Any, samples: Samples, point_mm: list[Array]) -> Array:
-    """The distance of points, three coordinates each `[..., n_bodies, n_points, n_levels]`, linear
-    between samples. Beyond them it is that of the nearest one, and the way there."""
+    """The distances of points, three coordinates of `[..., n_bodies, n_points, n_levels]` each,
+    linear between samples. Outside the grid it is the distance at the nearest point of the grid,
+    plus the distance to that point.
+    """
     whole, parts, beyond_mm2 = [], [], 0.0
     for axis in range(3):
         n_cells = samples.n_cells[..., axis, None, None]
@@ -103,7 +108,7 @@ def sampled_mm(xp: Any, samples: Samples, point_mm: list[Array]) -> Array:
         n = xp.astype(n_cells, cells.dtype)
         inside = xp.minimum(xp.maximum(cells, xp.zeros_like(cells)), n)
         corner = xp.minimum(xp.floor(inside), n - 1.0)
-        corner = xp.where(corner == corner, corner, 0.0)  # what is no number is at no place
+        corner = xp.where(corner == corner, corner, 0.0)  # NaN is at no location
         whole.append(xp.astype(corner, n_cells.dtype))
         parts.append(inside - corner)
         beyond_mm2 = beyond_mm2 + ((cells - inside) / per_mm) ** 2

@@ -1,4 +1,4 @@
-"""Rigid shapes as data: which ones there are, numbers tell."""
+"""Rigid shapes as arrays of numbers."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -14,28 +14,28 @@ _Floats = npt.NDArray[np.float64]
 
 
 class Shapes(NamedTuple):
-    """Shapes of bodies, `[..., n_bodies]`: what `ball`, `box` and the others make, and `stack` puts
-    together. A ball is a point that is grown by its radius; what else there is, masks tell. A mask
-    is `None` where no shape is of its kind, and costs nothing then.
+    """Shapes of bodies, `[..., n_bodies]`: the result of `ball`, `box` and the others, and of
+    `stack`. A ball is a point that is grown by its radius; masks mark the other kinds of shapes. A
+    mask is `None` if no shape is of its kind, and then costs nothing.
 
-    It is a tuple of arrays: shapes may differ from world to world, and may be others in each call
-    without anything being compiled anew, as long as there are the same kinds.
+    It is a tuple of arrays: shapes may differ from world to world and from call to call without a
+    new compilation, as long as the kinds are the same.
     """
 
     half_mm: Array
-    """Half of the size along each axis, without what it is grown by, `[..., n_bodies, 3]`."""
+    """Half of the size along each axis, without the growth, mm, `[..., n_bodies, 3]`."""
     grown_mm: Array
-    """By how much it is grown in all directions: radius of its edges, `[..., n_bodies]`."""
+    """Growth in all directions, which is the radius of the edges, mm, `[..., n_bodies]`."""
     middle_mm: Array
-    """Its middle in its own frame, `[..., n_bodies, 3]`."""
+    """The middle of the shape in its own frame, mm, `[..., n_bodies, 3]`."""
     is_box: Array | None = None
     is_cylinder: Array | None = None
-    """Of cylinders and capsules."""
+    """True for cylinders and capsules."""
     is_ellipsoid: Array | None = None
     is_plane: Array | None = None
     is_sampled: Array | None = None
     samples: Samples | None = None
-    """Where a shape is sampled."""
+    """The samples of the shapes that are sampled."""
 
     def as_precise(self, xp: Any, precision: Any) -> "Shapes":
         """The same lengths in another precision."""
@@ -53,14 +53,32 @@ _MASKS = ("is_box", "is_cylinder", "is_ellipsoid", "is_plane", "is_sampled")
 def ball(radius_mm: float) -> Shapes:
     """A ball that stands on its origin, as `Shape.sphere` does.
 
-    Raises `Error`, as all that make shapes, for a length that cannot be.
+    Args:
+        radius_mm: radius, mm, above 0.
+
+    Returns:
+        The shape.
+
+    Raises:
+        Error: for a length that is out of range, as all functions that make shapes do.
     """
     _check(radius_mm=radius_mm)
     return _shape((0.0, 0.0, 0.0), radius_mm, radius_mm)
 
 
 def box(size_mm: Sequence[float], edge_radius_mm: float = 0.0) -> Shapes:
-    """A box of this full size along x, y and z that stands on its origin, as `Shape.box` does."""
+    """A box that stands on its origin, as `Shape.box` does.
+
+    Args:
+        size_mm: full size along x, y and z, mm.
+        edge_radius_mm: radius of the edges, mm, at most half of the smallest size.
+
+    Returns:
+        The shape.
+
+    Raises:
+        Error: for a length that is out of range.
+    """
     if len(size_mm) != 3:
         raise refuse("size_mm", f"has {len(size_mm)} lengths", "3")
     _check(size_mm=min(size_mm))
@@ -70,7 +88,19 @@ def box(size_mm: Sequence[float], edge_radius_mm: float = 0.0) -> Shapes:
 
 
 def cylinder(radius_mm: float, height_mm: float, edge_radius_mm: float = 0.0) -> Shapes:
-    """An upright cylinder that stands on its origin, as `Shape.cylinder` does."""
+    """An upright cylinder that stands on its origin, as `Shape.cylinder` does.
+
+    Args:
+        radius_mm: radius, mm.
+        height_mm: height, mm.
+        edge_radius_mm: radius of the edges, mm, at most the radius and half of the height.
+
+    Returns:
+        The shape.
+
+    Raises:
+        Error: for a length that is out of range.
+    """
     _check(radius_mm=radius_mm, height_mm=height_mm)
     _check_edge(edge_radius_mm, min(radius_mm, 0.5 * height_mm))
     core_mm = radius_mm - edge_radius_mm
@@ -79,7 +109,18 @@ def cylinder(radius_mm: float, height_mm: float, edge_radius_mm: float = 0.0) ->
 
 
 def capsule(radius_mm: float, height_mm: float) -> Shapes:
-    """An upright cylinder with round ends, of this height over both, that stands on its origin."""
+    """An upright cylinder with hemispherical ends that stands on its origin.
+
+    Args:
+        radius_mm: radius, mm.
+        height_mm: height over both ends, mm, at least twice the radius.
+
+    Returns:
+        The shape.
+
+    Raises:
+        Error: for a length that is out of range.
+    """
     _check(radius_mm=radius_mm)
     if not height_mm >= 2.0 * radius_mm:
         raise refuse("height_mm", f"is {height_mm}", f"{2.0 * radius_mm} or more")
@@ -88,7 +129,17 @@ def capsule(radius_mm: float, height_mm: float) -> Shapes:
 
 
 def ellipsoid(half_mm: Sequence[float]) -> Shapes:
-    """An ellipsoid of these half axes along x, y and z that stands on its origin."""
+    """An ellipsoid that stands on its origin.
+
+    Args:
+        half_mm: half axes along x, y and z, mm.
+
+    Returns:
+        The shape.
+
+    Raises:
+        Error: for a length that is out of range.
+    """
     if len(half_mm) != 3:
         raise refuse("half_mm", f"has {len(half_mm)} lengths", "3")
     _check(half_mm=min(half_mm))
@@ -96,14 +147,16 @@ def ellipsoid(half_mm: Sequence[float]) -> Shapes:
 
 
 def plane() -> Shapes:
-    """A body that fills all that is below z = 0 of its frame, without end. It presses a gel that
-    looks at it: its z axis points against that of the gel."""
+    """A half-space: it fills everything below z = 0 of its frame. It presses a gel if its z axis
+    points against that of the gel.
+    """
     return _shape((1.0, 1.0, 1.0), 0.0, 0.0, is_plane=True)
 
 
 def mesh(shape: Shape) -> Shapes:
-    """Any `Shape` by samples of its distance, in its own frame: surfaces of triangles
-    (`Shape.surface`, `Shape.stl`), unions, rings. Sampling takes from a millisecond to a second."""
+    """Any `Shape` by samples of its distance, in its own frame: triangle meshes (`Shape.surface`,
+    `Shape.stl`), unions, rings. Sampling takes from a millisecond to a second.
+    """
     samples, bounds_mm = sampled(shape)
     middle_mm, half_mm = bounds_mm.mean(axis=0), 0.5 * (bounds_mm[1] - bounds_mm[0])
     found = _shape(half_mm, 0.0, 0.0, is_sampled=True)
@@ -111,8 +164,9 @@ def mesh(shape: Shape) -> Shapes:
 
 
 def centered(shapes: Shapes) -> Shapes:
-    """The same shapes with their origins in their middles, as simulators have them. Shapes that are
-    sampled stay where they are."""
+    """The same shapes with their origins in their middles, as in simulators. Shapes that are
+    sampled keep their origins.
+    """
     moved_mm = np.zeros_like(shapes.middle_mm)
     if shapes.is_sampled is not None:
         moved_mm = np.where(shapes.is_sampled[..., None], shapes.middle_mm, moved_mm)
@@ -120,10 +174,18 @@ def centered(shapes: Shapes) -> Shapes:
 
 
 def stack(shapes: Sequence[Shapes]) -> Shapes:
-    """Several shapes along a new first dimension: those of the bodies of a sensor, or what the
-    sensors of several worlds have, each as many. Arrays are of NumPy: `convert` comes afterwards.
+    """Combines shapes along a new first dimension: the shapes of the bodies of one sensor, or those
+    of the sensors of several worlds, of which each has the same number. The arrays are of NumPy;
+    use `convert` afterwards.
 
-    Raises `Error` if there is none, and for shapes of different leading dimensions.
+    Args:
+        shapes: at least one; all have the same leading dimensions.
+
+    Returns:
+        The shapes, with one more dimension.
+
+    Raises:
+        Error: if there is no shape, and for shapes of different leading dimensions.
     """
     if not shapes:
         raise refuse("shapes", "is empty", "a shape or more")
@@ -147,10 +209,17 @@ def stack(shapes: Sequence[Shapes]) -> Shapes:
 
 
 def choose(shapes: Shapes, number: Array) -> Shapes:
-    """Of shapes `[n_shapes]`, as `stack` makes them, those of the numbers `[..., n_bodies]`, which
-    count from 0: each body's own. It works on the device, and in functions that are compiled.
+    """Chooses a shape for each body. It works on the device, and in compiled functions.
 
-    Raises `Error` for shapes of other dimensions, and for numbers of another library.
+    Args:
+        shapes: shapes `[n_shapes]`, as `stack` makes them.
+        number: index of the shape of each body, from 0, `[..., n_bodies]`.
+
+    Returns:
+        The shapes of the bodies, `[..., n_bodies]`.
+
+    Raises:
+        Error: for shapes of other dimensions, and for indices of another library.
     """
     xp = namespace("shapes", shapes.grown_mm)
     check_same_library(xp, number=number)

@@ -1,4 +1,4 @@
-"""One environment."""
+"""A single environment."""
 
 from __future__ import annotations
 
@@ -14,20 +14,25 @@ from twintac.gymnasium._spaces import FRAMES_PER_S, Single, spaces
 
 
 class TouchEnv(gym.Env[Single, Single]):
-    """One environment of a task. It is the same as that of a vector environment under the same seed.
+    """One environment of a task. With the same seed, it equals an environment of a vector
+    environment.
 
-    - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. What each observes, does and rewards, says `twintac.gymnasium`.
-    - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
-    - `gel`: PhysTac's unless given.
-    - `render_mode`: `"rgb_array"`, or none.
+    Args:
+        kind: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. `twintac.gymnasium` describes their
+            observations, actions and rewards.
+        imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
+            working sensor unless given.
+        gel: the surrogate of the gel; PhysTac's unless given.
+        render_mode: `"rgb_array"`, or none.
 
-    Raises `twintac.Error` for a task that is not there, and for actions of another shape or that are not finite.
+    Raises:
+        twintac.Error: for an unknown task, and for actions of another shape or that are not finite.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 55}
-    """What Gymnasium knows of the environment; `render_fps` is the task's steps in a second."""
+    """Gymnasium's data about the environment; `render_fps` is the number of steps in a second."""
     provenance: ClassVar[str] = "simulated"
-    """What every number is."""
+    """Provenance of all numbers."""
 
     def __init__(
         self,
@@ -45,8 +50,16 @@ class TouchEnv(gym.Env[Single, Single]):
         self._is_seeded = False
 
     def reset(self, *, seed: SupportsIndex | None = None, options: dict[str, Any] | None = None) -> tuple[Single, dict[str, Any]]:
-        """Begins the next episode, or the first one of a seed. Returns the observation, `[n_observed]`, and the info."""
-        seed = None if seed is None else index(seed)  # NumPy's integers are none to Gymnasium
+        """Begins the next episode, or the first one of a seed.
+
+        Args:
+            seed: seed of the environment; the sequence of episodes continues unless given.
+            options: without effect.
+
+        Returns:
+            The observation, `[n_observed]`, and the info.
+        """
+        seed = None if seed is None else index(seed)  # Gymnasium does not accept integers of NumPy
         super().reset(seed=seed)
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**63))
@@ -57,13 +70,23 @@ class TouchEnv(gym.Env[Single, Single]):
         return observed[0], self._info(figures[0])
 
     def step(self, action: Single) -> tuple[Single, float, bool, bool, dict[str, Any]]:
-        """One step, with an action `[n_actions]`. Returns the observation, the reward, whether the task is over, whether time is over, and the info."""
+        """Makes one step.
+
+        Args:
+            action: the action, `[n_actions]`.
+
+        Returns:
+            The observation, the reward, whether the task is over, whether time is over, and the
+                info.
+        """
         actions = np.asarray(action, np.float32).reshape(1, -1)
         observed, rewards, terminated, truncated, figures, _ = self._tasks.step(actions)
         return observed[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info(figures[0])
 
     def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
-        """What is there from above, and what the sensor reads: `[240, 600, 3]`, 0 to 255. `None` unless `render_mode` is `"rgb_array"`."""
+        """A picture of the object from above and of the readings, `[240, 600, 3]`, 0 to 255; `None`
+        unless `render_mode` is `"rgb_array"`.
+        """
         return self._tasks.picture(0) if self.render_mode == "rgb_array" else None
 
     def _info(self, figures: Single) -> dict[str, Any]:

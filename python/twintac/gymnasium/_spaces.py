@@ -1,4 +1,4 @@
-"""What the environments have in common."""
+"""Code that the environments share."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ KINDS = ("ExploreShape", "HoldForce", "FollowEdge")
 """Names of the tasks."""
 
 FRAMES_PER_S = {"ExploreShape": 2, "HoldForce": 55, "FollowEdge": 55}
-"""Steps of a task in a second."""
+"""Steps of each task in a second."""
 
 Single: TypeAlias = npt.NDArray[np.float32]
-"""Numbers of single precision."""
+"""Arrays of single precision."""
 
 
 def require_gymnasium() -> None:
-    """Says how to install Gymnasium if it is missing."""
+    """Raises `ImportError`, which says how to install Gymnasium, if it is missing."""
     if importlib.util.find_spec("gymnasium") is None:
         raise ImportError("twintac.gymnasium needs the package gymnasium: pip install gymnasium")
 
 
 def spaces(tasks: Tasks) -> tuple[gym.Space[Single], gym.Space[Single]]:
-    """What one environment observes, and its actions."""
+    """The spaces of observations and actions of one environment."""
     from gymnasium.spaces import Box
 
     observation: gym.Space[Any] = Box(-10.0, 10.0, (tasks.n_observed,), np.float32)

@@ -19,17 +19,24 @@ _Bool = npt.NDArray[np.bool_]
 
 
 class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
-    """Many environments of a task, stepped in one call. Environment `i` of a seed is that of a single environment under `seed + i`, whatever others there are.
+    """Many environments of a task, stepped in one call. With a seed, environment `i` equals a
+    single environment with the seed `seed + i`; it does not depend on the other environments.
 
-    - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. What each observes, does and rewards, says `twintac.gymnasium`.
-    - `num_envs`: number of environments.
-    - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
-    - `gel`: PhysTac's unless given.
-    - `autoreset_mode`: when an environment whose episode is over begins the next one: in the next step, in the same step, or when `reset` is called.
-    - `n_threads`: as many as there are cores unless given; results do not depend on it.
-    - `render_mode`: `"rgb_array"`, or none.
+    Args:
+        kind: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. `twintac.gymnasium` describes their
+            observations, actions and rewards.
+        num_envs: number of environments.
+        imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
+            working sensor unless given.
+        gel: the surrogate of the gel; PhysTac's unless given.
+        autoreset_mode: when an environment whose episode is over begins the next one: in the next
+            step, in the same step, or when `reset` is called.
+        n_threads: number of threads; as many as there are cores unless given. Results do not depend
+            on it.
+        render_mode: `"rgb_array"`, or none.
 
-    Raises `twintac.Error` for a task that is not there, and for actions of another shape or that are not finite.
+    Raises:
+        twintac.Error: for an unknown task, and for actions of another shape or that are not finite.
     """
 
     metadata: dict[str, Any] = {
@@ -37,9 +44,9 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         "render_fps": 55,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
-    """What Gymnasium knows of the environments; `render_fps` is the task's steps in a second."""
+    """Gymnasium's data about the environments; `render_fps` is the number of steps in a second."""
     provenance: ClassVar[str] = "simulated"
-    """What every number is."""
+    """Provenance of all numbers."""
 
     def __init__(
         self,
@@ -74,8 +81,16 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
     def reset(
         self, *, seed: SupportsIndex | Sequence[SupportsIndex | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Single, dict[str, Any]]:
-        """Begins the next episode of each environment, or of those where `options["reset_mask"]`, `[num_envs]`, is true. `seed` gives environment `i` the seed
-        `seed + i`, or the one of a list. Returns observations, `[num_envs, n_observed]`, and infos."""
+        """Begins the next episode of each environment, or of chosen ones.
+
+        Args:
+            seed: environment `i` gets the seed `seed + i`, or the one of a list.
+            options: `options["reset_mask"]`, `[num_envs]`, is true for the environments to reset;
+                all unless given.
+
+        Returns:
+            Observations, `[num_envs, n_observed]`, and infos.
+        """
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**62))
         if seed is not None:
@@ -93,8 +108,16 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         return observed, self._infos(figures, np.ones(self.num_envs, np.bool_) if which is None else which)
 
     def step(self, actions: Single) -> tuple[Single, npt.NDArray[np.float64], _Bool, _Bool, dict[str, Any]]:
-        """One step of every environment, with actions `[num_envs, n_actions]`. Returns observations, `[num_envs, n_observed]`; rewards, whether the task is over, and
-        whether time is over, each `[num_envs]`; and infos. With the mode `"SameStep"` these have `final_obs` and `final_info` of the episodes that ended."""
+        """Makes one step of every environment.
+
+        Args:
+            actions: the actions, `[num_envs, n_actions]`.
+
+        Returns:
+            Observations, `[num_envs, n_observed]`; rewards, whether the task is over, and whether
+                time is over, each `[num_envs]`; and infos. With the mode `"SameStep"` the infos
+                have `final_obs` and `final_info` of the episodes that ended.
+        """
         observed, rewards, terminated, truncated, figures, last = self._tasks.step(actions)
         self._observed = observed
         infos = self._infos(figures, np.ones(self.num_envs, np.bool_))
@@ -103,7 +126,9 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         return observed, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:  # type: ignore[override]
-        """A picture of each environment, `[240, 600, 3]`, 0 to 255. `None` unless `render_mode` is `"rgb_array"`."""
+        """A picture of each environment, `[240, 600, 3]`, 0 to 255; `None` unless `render_mode` is
+        `"rgb_array"`.
+        """
         if self.render_mode != "rgb_array":
             return None
         return tuple(self._tasks.picture(number) for number in range(self.num_envs))
@@ -116,7 +141,9 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         return infos
 
     def _tell_ends(self, infos: dict[str, Any], ended: _Bool, observed: Single, figures: Single) -> None:
-        """What was observed last in episodes that ended in this step, as Gymnasium's own vector environments tell it."""
+        """Adds the last observation of the episodes that ended in this step to the infos, in the
+        form of Gymnasium's own vector environments.
+        """
         last = np.full(self.num_envs, None, dtype=object)
         for number in np.flatnonzero(ended):
             last[number] = observed[number]

@@ -1,4 +1,4 @@
-"""Policies that nobody trained: by chance, and scripts such as a laboratory would write.
+"""Policies without training: random baselines and scripted baselines.
 
 A policy is a function from observations, `[n, n_observed]`, to actions, `[n, n_actions]`.
 """
@@ -15,7 +15,7 @@ from twintac import Body, FastGel, Shape, Tasks
 from twintac.gymnasium._spaces import Single
 
 Policy: TypeAlias = Callable[[Single], Single]
-"""From observations, `[n, n_observed]`, to actions, `[n, n_actions]`."""
+"""A function from observations, `[n, n_observed]`, to actions, `[n, n_actions]`."""
 
 _Double: TypeAlias = npt.NDArray[np.float64]
 _Integers: TypeAlias = npt.NDArray[np.int64]
@@ -25,7 +25,15 @@ _HEIGHT_MM = 8.5
 
 
 def random_policy(kind: str, seed: int = 0) -> Policy:
-    """Actions by chance, evenly from -1 to 1. `kind` is the task."""
+    """The random baseline: actions that are uniformly distributed from -1 to 1.
+
+    Args:
+        kind: the task.
+        seed: seed of the random numbers.
+
+    Returns:
+        The policy.
+    """
     n_actions = Tasks(kind, 1).n_actions
     random = np.random.default_rng(seed)
 
@@ -36,13 +44,32 @@ def random_policy(kind: str, seed: int = 0) -> Policy:
 
 
 def scripted_policy(kind: str, seed: int = 0) -> Policy:
-    """The script for a task, `kind`, for PhysTac. It takes some seconds to make. HoldForce's is calibrated on the task's shapes and FollowEdge's on its discs, both with perfect sensors; ExploreShape's on imperfect ones."""
+    """The scripted baseline of a task, for PhysTac. Making it takes some seconds. The baseline of
+    HoldForce is calibrated on the task's shapes and that of FollowEdge on the task's discs, both
+    with perfect sensors; that of ExploreShape with sensor variation.
+
+    Args:
+        kind: the task.
+        seed: seed of the random presses that the baseline is calibrated on.
+
+    Returns:
+        The policy.
+    """
     scripts = {"HoldForce": _hold_force, "FollowEdge": _follow_edge, "ExploreShape": _explore_shape}
     return scripts[kind](np.random.default_rng(seed))
 
 
 def returns(policy: Policy, tasks: Tasks) -> _Double:
-    """Sum of the rewards of one episode of each environment, `[n_environments]`. Environments must not begin anew by themselves (`autoreset="Disabled"`)."""
+    """The return (sum of the rewards) of one episode of each environment.
+
+    Args:
+        policy: the policy to evaluate.
+        tasks: the environments, which must not start new episodes by themselves
+            (`autoreset="Disabled"`).
+
+    Returns:
+        The returns, `[n_environments]`.
+    """
     observed, _ = tasks.reset()
     total, is_going = np.zeros(len(tasks)), np.ones(len(tasks), np.bool_)
     while is_going.any():
@@ -55,7 +82,9 @@ def returns(policy: Policy, tasks: Tasks) -> _Double:
 def _contacts(
     shapes: list[Shape], number: _Integers, place_mm: _Double, spin_rad: _Double, depth_mm: _Double
 ) -> tuple[Single, Single]:
-    """What perfect sensors read, kPa, and the force, N, of shapes at places."""
+    """The readings of perfect sensors, kPa, and the force, N, under shapes at given locations, yaws
+    and depths.
+    """
     batch = FastGel.phystac().batch([Body(shape) for shape in shapes])
     zero = np.zeros_like(spin_rad)
     pose = np.stack(
@@ -66,7 +95,9 @@ def _contacts(
 
 
 def _hold_force(random: np.random.Generator) -> Policy:
-    """The force is a weighted sum of the readings, by least squares; the speed is in proportion to what is missing."""
+    """The scripted baseline of HoldForce. It estimates the force as a weighted sum of the readings
+    (least squares). The speed is proportional to the error of the force.
+    """
     n = 2000
     balls = [Shape.sphere(radius_mm) for radius_mm in (8.0, 10.0, 12.5)]
     shapes = [*balls, Shape.cylinder(5.0, 10.0, 0.8), Shape.box((10.0, 10.0, 10.0), 0.8)]
@@ -85,7 +116,10 @@ def _hold_force(random: np.random.Generator) -> Policy:
 
 
 def _follow_edge(random: np.random.Generator) -> Policy:
-    """The way out of the face, how far the edge is and the force are weighted sums, by least squares; each speed is in proportion to what is off."""
+    """The scripted baseline of FollowEdge. It estimates the direction out of the face, the distance
+    of the edge and the force as weighted sums (least squares). Each speed is proportional to its
+    error.
+    """
     n = 4000
     shapes = [Shape.cylinder(radius_mm, 10.0, 0.8) for radius_mm in (8.0, 9.5, 11.0)]
     radius_mm = np.array([8.0, 9.5, 11.0])
@@ -93,7 +127,7 @@ def _follow_edge(random: np.random.Generator) -> Policy:
     way_out = random.uniform(-np.pi, np.pi, n)
     outward = np.stack([np.cos(way_out), np.sin(way_out)], axis=1)
     beside_mm, depth_mm = random.uniform(-3.0, 3.0, n), random.uniform(0.5, 1.5, n)
-    # The gel's middle is beside the edge: the disc's middle is inwards of it.
+    # The gel's middle is beside the edge, so the disc's middle lies inward of it.
     place_mm = -(radius_mm[number] + beside_mm)[:, None] * outward
     readings_kpa, force_n = _contacts(shapes, number, place_mm, np.zeros(n), depth_mm)
 
@@ -104,7 +138,7 @@ def _follow_edge(random: np.random.Generator) -> Policy:
     told = np.concatenate([outward, beside_mm[:, None]], axis=1)
     weights, *_ = np.linalg.lstsq(features(readings_kpa), told, rcond=None)
     force_weights, *_ = np.linalg.lstsq(readings_kpa, force_n, rcond=None)
-    # The best of some twenty combinations.
+    # The best of about twenty combinations.
     wanted_n, deeper_per_n, back_per_mm, ahead = 3.0, 0.5, 0.5, 1.0
 
     def act(observed: Single) -> Single:
@@ -121,7 +155,10 @@ def _follow_edge(random: np.random.Generator) -> Policy:
 
 
 def _explore_shape(random: np.random.Generator) -> Policy:
-    """Four presses at fixed places, as deep as it goes; each shape is as probable as its part of the 25 nearest of 10,000 presses that were made in advance."""
+    """The scripted baseline of ExploreShape. It makes four presses at fixed locations, to the
+    largest depth. The probability of a shape is its fraction among the 25 nearest of 10,000 presses
+    that were simulated before.
+    """
     n, n_presses, n_shapes, nearest = 10_000, 4, 5, 25
     places = np.array([[0.0, 0.0], [0.35, 0.0], [-0.35, 0.0], [0.0, 0.5]])
     tasks = Tasks("ExploreShape", n, autoreset="Disabled")

@@ -18,9 +18,16 @@ from twintac.gymnasium._spaces import Single, spaces
 
 
 class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
-    """Many environments of a task. Episodes that end begin anew in the same step, as Stable-Baselines3 expects.
+    """Many environments of a task. An episode that ends is followed by a new one in the same step,
+    as Stable-Baselines3 expects.
 
-    `kind`, `num_envs`, `imperfection`, `gel` and `n_threads` are those of `twintac.gymnasium.TouchVectorEnv`. Environment `i` has the seed `seed + i`.
+    Args:
+        kind: as in `twintac.gymnasium.TouchVectorEnv`.
+        num_envs: number of environments.
+        imperfection: as in `TouchVectorEnv`.
+        gel: as in `TouchVectorEnv`.
+        n_threads: as in `TouchVectorEnv`.
+        seed: environment `i` has the seed `seed + i`.
     """
 
     def __init__(
@@ -44,7 +51,11 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         self._lengths = np.zeros(num_envs, np.int64)
 
     def reset(self) -> Single:  # type: ignore[override, unused-ignore]
-        """Begins the next episode of every environment. Returns observations, `[num_envs, n_observed]`."""
+        """Begins the next episode of every environment.
+
+        Returns:
+            Observations, `[num_envs, n_observed]`.
+        """
         self.tasks.seed(self._seeds)
         self._reset_seeds()
         self._reset_options()
@@ -53,12 +64,17 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return self.tasks.reset()[0]
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
-        """Takes the actions of the next step, `[num_envs, n_actions]`."""
+        """Stores the actions of the next step, `[num_envs, n_actions]`."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Single, npt.NDArray[np.float64], npt.NDArray[np.bool_], list[dict[str, Any]]]:  # type: ignore[override, unused-ignore]
-        """Makes the step. Returns observations, rewards, whether episodes ended, and infos. Only episodes that ended have an info, with `terminal_observation`,
-        `TimeLimit.truncated` and `episode`."""
+        """Makes the step.
+
+        Returns:
+            Observations, `[num_envs, n_observed]`; rewards, and whether episodes ended, each
+                `[num_envs]`; and infos. Only the infos of episodes that ended have content: the
+                figures of the task, `terminal_observation`, `TimeLimit.truncated` and `episode`.
+        """
         observed, rewards, terminated, truncated, _, last = self.tasks.step(self._actions)
         self._returns += rewards
         self._lengths += 1
@@ -76,22 +92,22 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return observed, rewards, ended, infos
 
     def close(self) -> None:
-        """Nothing has to be closed."""
+        """Does nothing: the environments hold no resources."""
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """An attribute of this object, for each environment."""
+        """An attribute of this object, once for each environment."""
         return [getattr(self, attr_name)] * len(self._numbers(indices))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Environments have no attributes of their own."""
+        """Raises `AttributeError`: environments have no attributes of their own."""
         raise AttributeError(f"environments of {type(self).__name__} have no attribute of their own to set: {attr_name}")
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """Environments have no methods of their own."""
+        """Raises `AttributeError`: environments have no methods of their own."""
         raise AttributeError(f"environments of {type(self).__name__} have no method of their own: {method_name}")
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """Nothing is wrapped."""
+        """`False` for each environment: there are no wrappers."""
         return [False] * len(self._numbers(indices))
 
     def get_images(self) -> Sequence[npt.NDArray[np.uint8]]:

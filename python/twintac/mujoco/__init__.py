@@ -1,8 +1,8 @@
 """Touch sensors on any body of a MuJoCo model.
 
-The gel of a sensor is no geom that collides: the fast gel reads how far the geoms of other bodies
-reach into it, and what it pushes them with is
-applied to both bodies. So the gel carries the load, not MuJoCo's contact.
+The gel of a sensor is not a colliding geom. The surrogate of the gel computes the forces from the
+depth of other bodies' geoms in the gel, and these forces are applied to both bodies. So the gel
+carries the load, instead of MuJoCo's contacts.
 """
 
 from ._attach import add_sensor

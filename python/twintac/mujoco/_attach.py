@@ -1,4 +1,4 @@
-"""A sensor, put onto a body of a model."""
+"""Sensors on bodies of a model."""
 
 from collections.abc import Sequence
 
@@ -19,11 +19,19 @@ def add_sensor(
     position_mm: Sequence[float] = (0.0, 0.0, 0.0),
     quaternion: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
 ) -> None:
-    """Puts a sensor onto a body: a site `name` that is the frame of its gel, z out of the board, and a box `name` that shows the gel and touches nothing.
+    """Adds a sensor to a body: a site `name`, which is the frame of the gel, with z out of the
+    board, and a box `name`, which shows the gel and collides with nothing.
 
-    `position_mm`, mm, and `quaternion`, `(x, y, z, w)`, are those of the gel's frame in the body's.
+    Args:
+        spec: the model's specification, which is changed.
+        sensor: the sensor.
+        body: name of the body.
+        name: name of the site and of the box.
+        position_mm: position of the gel's frame in the body's frame, mm.
+        quaternion: orientation of the gel's frame in the body's frame, `(x, y, z, w)`.
 
-    Raises `ValueError` for a body that the model does not have.
+    Raises:
+        ValueError: for a body that the model does not have.
     """
     parent = spec.body(body)
     if parent is None:

@@ -1,25 +1,25 @@
-"""What time it is in each world, and how it goes on."""
+"""The time of each world, from update to update."""
 
 import numpy as np
 import numpy.typing as npt
 
 _Array = npt.NDArray[np.float64]
-# Of a time step, and of the time, that rounding may take.
+# Tolerances for rounding, as fractions of a time step and of the time.
 _OF_STEP, _OF_TIME = 1e-6, 1e-12
 
 
 class Clock:
-    """The time of each world when it was looked at last, s; NaN in a world that begins anew."""
+    """The time of each world at the last update, s; NaN in a world that starts anew."""
 
     def __init__(self, n_worlds: int) -> None:
         self.last_s = np.full(n_worlds, np.nan)
 
     def passed(self, now_s: _Array, timestep_s: _Array) -> tuple[float, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-        """The time since it was looked at last, s: one time step or none, the same in all worlds;
-        which worlds have begun anew, as their time went back; and which have
-        gone on.
+        """Compares the current times with those of the last update.
 
-        Raises `ValueError` where more or less than one time step has passed.
+        Returns the time that has passed, s (one time step or 0, the same in all worlds); which
+        worlds have started anew, because their time went back; and which have made a step. Raises
+        `ValueError` if more or less than one time step has passed.
         """
         known = ~np.isnan(self.last_s)
         begun = known & (now_s < self.last_s)

@@ -1,4 +1,4 @@
-"""Which geoms can touch sensors, and what they are in each world."""
+"""The geoms that can touch sensors, and their shapes in each world."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,14 +12,14 @@ from ._worlds import Data, Worlds
 
 _Ints = npt.NDArray[np.intp]
 _Fields = list[npt.NDArray[Any]]
-# What a geom's shape is made of, beside meshes and height fields.
+# The fields that define a geom's shape, besides those of meshes and height fields.
 _FIELDS = ("geom_type", "geom_dataid", "geom_size")
 _COLLIDES = ("geom_contype", "geom_conaffinity")
 
 
 class Geoms:
-    """Geoms that can touch: those of these names, or all that collide. Their shapes are read anew
-    where models have changed.
+    """The geoms that can touch: those with the given names, or all that collide. Their shapes are
+    read again when models have changed.
     """
 
     def __init__(self, model: mujoco.MjModel, worlds: Worlds, names: Sequence[str] | None) -> None:
@@ -41,17 +41,17 @@ class Geoms:
         self._read([model], [np.asarray(getattr(model, name))[None][:, self.number] for name in _FIELDS])
 
     def read(self, data: Data) -> bool:
-        """Reads the geoms of all worlds, where they have changed; returns whether any has.
+        """Reads the geoms of all worlds, if they have changed; returns whether any has.
 
-        Raises `ValueError` where other geoms collide than did at first, and for geoms that cannot
-        be felt.
+        Raises `ValueError` if other geoms collide than at first, and for geoms of unsupported
+        types.
         """
         models = self._worlds.models
         fields: _Fields = [self._worlds.field(data, name)[:, self.number] for name in _FIELDS]
         self._check_colliding(data)
         is_same = len(models) == len(self._models) and all(one is other for one, other in zip(models, self._models))
         is_same = is_same and _equal(fields, self._fields)
-        # Models of single worlds are set anew where they have changed.
+        # The models of single worlds are replaced when they change.
         if is_same and (len(models) > 1 or _equal(self._contents(models[0], fields), self._assets)):
             return False
         self._read(models, fields)
@@ -84,7 +84,7 @@ class Geoms:
         self.is_plane = np.broadcast_to(kind == PLANE, n_all)
 
     def _contents(self, model: mujoco.MjModel, fields: _Fields) -> _Fields:
-        """What meshes and height fields are made of."""
+        """The data of meshes and height fields."""
         kinds = {(int(kind), int(asset)) for kind, asset in zip(fields[0].ravel(), fields[1].ravel())}
         return [part for kind in sorted(kinds) for part in contents(model, *kind)]
 
@@ -101,12 +101,12 @@ def _equal(some: _Fields, others: _Fields) -> bool:
 
 
 def colliding(model: mujoco.MjModel) -> _Ints:
-    """The numbers of the geoms that collide with others."""
+    """The indices of the geoms that collide with others."""
     return np.nonzero((model.geom_contype | model.geom_conaffinity) != 0)[0]
 
 
 def number_of(model: mujoco.MjModel, kind: str, name: str) -> int:
-    """The number of a site or geom.
+    """The index of a site or geom.
 
     Raises `ValueError` for one that the model does not have.
     """

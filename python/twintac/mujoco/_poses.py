@@ -1,4 +1,4 @@
-"""Turns: quaternions as MuJoCo has them, `(w, x, y, z)`, in arrays of any shape `[…, 4]`, and
+"""Rotations: quaternions in MuJoCo's order, `(w, x, y, z)`, in arrays of any shape `[…, 4]`, and
 matrices.
 """
 
@@ -6,25 +6,25 @@ import numpy as np
 import numpy.typing as npt
 
 _Array = npt.NDArray[np.float64]
-# Axes, each one further and two further.
+# The axes, cyclically shifted by one and by two.
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
 
 def multiply(a: _Array, b: _Array) -> _Array:
-    """The turn `b`, then the turn `a`."""
+    """The product of two rotations: `b`, then `a`."""
     vector = a[..., :1] * b[..., 1:] + b[..., :1] * a[..., 1:] + cross(a[..., 1:], b[..., 1:])
     scalar = a[..., :1] * b[..., :1] - (a[..., 1:] * b[..., 1:]).sum(-1, keepdims=True)
     return np.concatenate([scalar, vector], axis=-1)
 
 
 def turned_back(a: _Array) -> _Array:
-    """The turn the other way."""
+    """The inverse rotation."""
     back: _Array = a * np.array([1.0, -1.0, -1.0, -1.0])
     return back
 
 
 def quaternion_of(turn: _Array) -> _Array:
-    """Quaternions of matrices, `[…, 3, 3]`; of no turn at all, a matrix of zeros, zeros."""
+    """Quaternions of rotation matrices, `[…, 3, 3]`; zeros for a matrix of zeros."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.moveaxis(turn, (-2, -1), (0, 1))
     squares = np.stack([1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz], axis=-1)
     w, x, y, z = np.moveaxis(squares, -1, 0)
@@ -34,7 +34,7 @@ def quaternion_of(turn: _Array) -> _Array:
         [xz - zx, xy + yx, y, yz + zy],
         [yx - xy, zx + xz, yz + zy, z],
     ]
-    # That which divides by the largest part is exact.
+    # The formula that divides by the largest component is exact.
     largest = squares.argmax(-1)[..., None]
     row = np.stack([np.stack(one, axis=-1) for one in rows], axis=-2)
     row = np.take_along_axis(row, largest[..., None], axis=-2)[..., 0, :]
@@ -44,12 +44,12 @@ def quaternion_of(turn: _Array) -> _Array:
 
 
 def turned(turn: _Array, vector: _Array) -> _Array:
-    """Vectors, `[n, 3]`, turned by matrices, `[n, 3, 3]`."""
+    """Vectors, `[n, 3]`, rotated by matrices, `[n, 3, 3]`."""
     vectors: _Array = (turn @ vector[:, :, None])[:, :, 0]
     return vectors
 
 
 def cross(a: _Array, b: _Array) -> _Array:
-    """The cross product; for a few vectors three times as fast as NumPy's."""
+    """The cross product; for few vectors it is three times as fast as NumPy's."""
     product: _Array = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
     return product

@@ -1,4 +1,4 @@
-"""What gels and bodies do to each other, as MuJoCo takes it."""
+"""The forces between gels and bodies, in MuJoCo's form."""
 
 import mujoco
 import numpy as np
@@ -12,8 +12,8 @@ _FEELING = (int(mujoco.mjtSensor.mjSENS_FORCE), int(mujoco.mjtSensor.mjSENS_TORQ
 
 
 class Push:
-    """Wrenches on bodies in world axes, `[n_worlds, n_bodies, 6]`: force, N, and torque, N m, about
-    the point that MuJoCo takes for each.
+    """Wrenches on bodies along world axes, `[n_worlds, n_bodies, 6]`: force, N, and torque, N m,
+    about the reference point that MuJoCo uses for each.
     """
 
     def __init__(self, model: mujoco.MjModel, worlds: Worlds, bodies: npt.NDArray[np.intp]) -> None:
@@ -28,15 +28,16 @@ class Push:
                 self._moves[first : first + int(model.body_dofnum[other]), row] = 1.0
         self.owned = self._moves.any(axis=1)
         self._written = np.zeros((worlds.n_worlds, int(self.owned.sum())))
-        # What may stand there too: what a state that was set back had written.
+        # The values that a restored state had written are allowed there, too.
         self._restored = self._written.copy()
 
     def on_bodies(self, about: _Array, touching: tuple[_Array, _Array, _Array], who: tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.intp]]) -> _Array:
-        """The wrench on each body, `[n_worlds, n_bodies, 6]`, of forces on gels at points,
-        `[n_touches, 3]` each: force, N, torque, N m, and the point, m.
+        """The wrench on each body, `[n_worlds, n_bodies, 6]`, from wrenches on gels.
 
-        - `about`: the point that each body's torque counts about, m, `[n_worlds, n_bodies, 3]`.
-        - `who`: number of the world, of the body with the gel and of the body that touches,
+        - `about`: the reference point of each body's torque, m, `[n_worlds, n_bodies, 3]`.
+        - `touching`: force on the gel, N, torque, N m, and the point of application, m,
+          `[n_touches, 3]` each.
+        - `who`: indices of the world, of the body with the gel and of the touching body,
           `[n_touches]` each.
         """
         (force_n, torque_n_m, at_m), (world, with_gel, other) = touching, who
@@ -50,25 +51,27 @@ class Push:
         return total
 
     def middles_m(self, data: Data) -> _Array:
-        """Where bodies' wrenches in `xfrc_applied` count about, m."""
+        """The reference points of the bodies' wrenches in `xfrc_applied`, m."""
         return self._worlds.rows(data, "xipos")[:, self.bodies]
 
     def roots_m(self, data: Data) -> _Array:
-        """Where motions of degrees of freedom count about, m."""
+        """The reference points of the motions of degrees of freedom, m."""
         return self._worlds.rows(data, "subtree_com")[:, self._model.body_rootid[self.bodies]]
 
     def generalized(self, data: Data, about_roots: _Array) -> _Array:
-        """Wrenches about the roots as forces of the degrees of freedom, `[n_worlds, n_owned]`."""
+        """Wrenches about the roots, converted to forces of the degrees of freedom,
+        `[n_worlds, n_owned]`.
+        """
         wrench = self._moves[self.owned] @ about_roots
         motion = self._worlds.rows(data, "cdof")[:, self.owned]
         with np.errstate(invalid="ignore"):
             forces = (motion[..., :3] * wrench[..., 3:]).sum(-1) + (motion[..., 3:] * wrench[..., :3]).sum(-1)
-        # What hangs together with a body that is lost, is lost.
+        # Forces are not finite if a body of the kinematic tree has no finite pose; they become 0.
         return np.where(np.isfinite(forces), forces, 0.0)
 
     def check(self, data: Data, goes_on: npt.NDArray[np.bool_]) -> None:
-        """Raises `ValueError` where others have written what is written here, in `qfrc_applied`;
-        `goes_on`: in which worlds a step was made with it.
+        """Raises `ValueError` if others have changed the values in `qfrc_applied` that are written
+        here; `goes_on`: the worlds in which a step was made with these values.
         """
         found = self._worlds.rows(data, "qfrc_applied")[:, self.owned]
         foreign = (found != 0.0) & (found != self._written) & (found != self._restored)
@@ -82,23 +85,23 @@ class Push:
         raise ValueError(f"{problem}: what gels do stands there; give forces of yours in `xfrc_applied`, set `qfrc_applied` to 0 after another state was loaded, or step within `with touch.pushing(data):`, which leaves it to you")
 
     def write(self, data: Data, forces: _Array) -> None:
-        """Writes forces of the degrees of freedom into `qfrc_applied`."""
+        """Writes the forces of the degrees of freedom into `qfrc_applied`."""
         self._worlds.rows(data, "qfrc_applied")[:, self.owned] = forces
         self._written = forces
         self._restored = np.zeros_like(forces)
 
     @property
     def written(self) -> _Array:
-        """What was written last, `[n_worlds, n_owned]`."""
+        """The values that were written last, `[n_worlds, n_owned]`."""
         return self._written
 
     def restore(self, world: int, written: _Array) -> None:
-        """Knows what a state that is set back had written."""
+        """Stores the values that a restored state had written."""
         self._restored[world] = written
 
     def unfelt_by(self) -> str | None:
-        """The first of MuJoCo's own force sensors that would not feel what is written into
-        `qfrc_applied`, by name or number.
+        """The first of MuJoCo's own force or torque sensors that would not measure forces in
+        `qfrc_applied`, by name or number; `None` if there is none.
         """
         model = self._model
         above = {other for body in self.bodies for other in _up(model, int(body))}
@@ -109,7 +112,7 @@ class Push:
 
 
 def _up(model: mujoco.MjModel, body: int) -> list[int]:
-    """A body and those that it hangs on, but the world."""
+    """A body and all its ancestors, without the world."""
     chain = []
     while body > 0:
         chain.append(body)

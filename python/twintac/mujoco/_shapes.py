@@ -1,5 +1,4 @@
-"""Geoms of a model as rigid shapes: the true ones, not the convex hulls with which MuJoCo collides.
-"""
+"""Geoms of a model as rigid shapes: the true shapes, not the convex hulls that MuJoCo collides."""
 
 from typing import Any, NamedTuple
 
@@ -13,32 +12,34 @@ _Array = npt.NDArray[np.float64]
 _Type = mujoco.mjtGeom
 
 PLANE, MESH, HFIELD = int(_Type.mjGEOM_PLANE), int(_Type.mjGEOM_MESH), int(_Type.mjGEOM_HFIELD)
-# A plane is a slab, of which sensors are above the middle: its frame goes along the plane in
-# strides, mm.
+# A plane is a slab. Its frame moves along the plane in strides, mm, so that sensors are near the
+# middle of the slab.
 _SLAB_MM = (20000.0, 20000.0, 40.0)
 PLANE_STRIDE_MM = 5000.0
 _LONGITUDES, _LATITUDES = 48, 24
 
 
 class Felt(NamedTuple):
-    """A geom as sensors feel it."""
+    """The shape of a geom, for sensors."""
 
     body: Body
     origin_mm: float
-    """Height of the shape's origin in the geom's frame."""
+    """Height of the shape's origin in the geom's frame, mm."""
     radius_mm: float
-    """Of the ball about the geom's frame that holds it; without meaning for a plane."""
+    """Radius of the ball about the geom's origin that holds the geom, mm; without meaning for a
+    plane.
+    """
 
 
 def key_of(model: mujoco.MjModel, kind: int, asset: int, half_m: _Array) -> tuple[object, ...]:
-    """What geoms of equal shape have in common."""
+    """A key that is equal for geoms of equal shape."""
     if kind in (MESH, HFIELD):
         return kind, *(part.tobytes() for part in contents(model, kind, asset))
     return kind, half_m.tobytes()
 
 
 def contents(model: mujoco.MjModel, kind: int, asset: int) -> list[npt.NDArray[Any]]:
-    """What a mesh or height field is made of, as views; of other geoms nothing."""
+    """The data of a mesh or height field, as views; empty for other geoms."""
     if kind == MESH:
         first, n_corners = int(model.mesh_vertadr[asset]), int(model.mesh_vertnum[asset])
         first_triangle, n_triangles = int(model.mesh_faceadr[asset]), int(model.mesh_facenum[asset])
@@ -50,9 +51,9 @@ def contents(model: mujoco.MjModel, kind: int, asset: int) -> list[npt.NDArray[A
 
 
 def felt(model: mujoco.MjModel, geom: int, kind: int, asset: int, half_m: _Array) -> Felt:
-    """A geom of this kind, asset and size, in mm.
+    """The shape of a geom of this kind, asset and size.
 
-    Raises `ValueError`, which names the geom, for one that sensors do not feel.
+    Raises `ValueError`, which names the geom, for a geom that has no supported shape.
     """
     if kind in (PLANE, MESH, HFIELD):
         size_mm = np.zeros(3)
@@ -90,7 +91,7 @@ def _shape(model: mujoco.MjModel, geom: int, kind: int, asset: int, size_mm: _Ar
 
 
 def surface_of(kind: int, parts: list[npt.NDArray[Any]]) -> tuple[_Array, npt.NDArray[np.int64]]:
-    """Corners, mm, and triangles of what `contents` returns of a mesh or height field."""
+    """Vertices, mm, and triangles of a mesh or height field, from the result of `contents`."""
     if kind == HFIELD:
         return _height_field(*parts)
     corners_m, triangles = parts
@@ -111,7 +112,7 @@ def _capsule(radius_mm: float, half_mm: float) -> Shape:
 
 
 def _height_field(size_m: npt.NDArray[Any], part: npt.NDArray[Any]) -> tuple[_Array, npt.NDArray[np.int64]]:
-    """A height field as a closed block: its grid on top, its base below."""
+    """A height field as a closed surface: the grid on top, the base below."""
     n_y, n_x = part.shape
     half_x_mm, half_y_mm, top_mm, base_mm = 1e3 * size_m.astype(float)
     heights = part.astype(float).ravel()

@@ -1,4 +1,4 @@
-"""Sensors that feel what touches their bodies, and push back."""
+"""Sensors that measure contact with the geoms of other bodies, and push these bodies."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,15 +19,15 @@ from ._worlds import Data, Worlds
 
 _Array = npt.NDArray[np.float64]
 _Ints = npt.NDArray[np.intp]
-# Bodies push when they are this close, mm.
+# Bodies closer to a sensor than this are evaluated, mm.
 _REACH_MM = 2.0
-# Sensors that are built in, with their gels, by name.
+# The built-in sensors, with their surrogates, by name.
 _BUILT_IN = {"phystac": (Sensor.phystac, FastGel.phystac), "phystac-tip": (Sensor.phystac_tip, FastGel.phystac_tip)}
 
 
 @dataclass(frozen=True)
 class TouchState:
-    """What `TouchSensors` remember at a moment: what `TouchSensors.state` returns."""
+    """The state of `TouchSensors` at a time: the result of `TouchSensors.state`."""
 
     _sensors: tuple[SensorState, ...]
     _readings_kpa: npt.NDArray[np.float32]
@@ -37,7 +37,7 @@ class TouchState:
 
 
 class _Touches(NamedTuple):
-    """What touches, of all worlds: numbers of world, sensor and geom, `[n_touches]`."""
+    """The contacts in all worlds: indices of world, sensor and geom, `[n_touches]`."""
 
     world: _Ints
     sensor: _Ints
@@ -47,39 +47,46 @@ class _Touches(NamedTuple):
 class TouchSensors:
     """Touch sensors in one or many worlds of one model.
 
-    - `sites`: names of the sites that are the frames of their gels, z out of the board:
-      `add_sensor` makes them.
-    - `sensor`, `gel`: of all of them; PhysTac and its fast gel unless given. Of a sensor that is
-      built in, one tells the other.
-    - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
-    - `imperfection`: makes each sensor imperfect in its own way; perfect ones unless given.
-    - `friction`: Coulomb's coefficient of every body on every gel.
-    - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
-    - `geoms`: names of the geoms that can touch; all that collide unless given. Those of the
-      sensor's own body never do.
-    - `n_worlds`: worlds of the model, as those of a `mujoco.batch.Batch`.
-    - `n_threads`: as many as there are cores unless given; results do not depend on it.
-    - `seed`: of the imperfections.
-
     Call `update` once in each time step, when poses are known and forces are not:
 
         mujoco.mj_step1(model, data)
         touch.update(data)
         mujoco.mj_step2(model, data)
 
-    or, for a persistent `mujoco.batch.Batch` of `n_worlds` simulations, after
-    `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`.
-    Steps of 2 ms or less keep bodies of 20 g and more at rest on the gel.
+    With a persistent `mujoco.batch.Batch` of `n_worlds` simulations, call it after each
+    `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`. With steps of 2 ms or less, bodies of 20 g and
+    more stay at rest on the gel.
 
-    `update` writes what gels do into `qfrc_applied`, anew in each step, and nowhere else: what you,
-    a viewer or a reset do to `xfrc_applied` is yours. `pushing` leaves `qfrc_applied` to
-    you as well, and lets MuJoCo's own force sensors feel the gels.
+    `update` writes the forces of the gels into `qfrc_applied` in each step, and changes no other
+    field: you, a viewer or a reset may use `xfrc_applied`. With `pushing` you may use
+    `qfrc_applied` as well, and MuJoCo's own force sensors measure the gels.
 
-    What a gel remembers of a touch, it remembers of this geom on this sensor in this world. Geoms
-    that have been given another size, mesh or height field are read anew in the next update.
+    A gel keeps the state of friction and damping for each pair of geom and sensor in each world. If
+    a geom has a new size, mesh or height field, the next update reads its shape again.
 
-    Raises `ValueError` for a site or geom that the model does not have, if no geom can touch, and
-    for a sensor, gel and twin that do not belong together.
+    Args:
+        model: the model.
+        sites: names of the sites that are the frames of the gels, with z out of the board;
+            `add_sensor` makes such sites.
+        sensor: the description of all sensors; PhysTac unless given. For a built-in sensor,
+            `sensor` or `gel` alone is enough.
+        gel: the surrogate of the gel of all sensors; PhysTac's unless given.
+        twin: with a twin, readings are those of its barometers, with gains and viscoelastic
+            relaxation; without, readings are the pressures at the ports.
+        imperfection: the sensor variation, from which each sensor is drawn; perfect sensors unless
+            given.
+        friction: Coulomb's coefficient of every body on every gel.
+        retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
+        geoms: names of the geoms that can touch; all colliding geoms unless given. Geoms of the
+            sensor's own body never touch it.
+        n_worlds: number of worlds of the model, such as those of a `mujoco.batch.Batch`.
+        n_threads: number of threads; as many as there are cores unless given. Results do not depend
+            on it.
+        seed: seed of the sensor variation.
+
+    Raises:
+        ValueError: for a site or geom that the model does not have, if no geom can touch, and for a
+            sensor, gel and twin that do not belong together.
     """
 
     def __init__(
@@ -125,13 +132,14 @@ class TouchSensors:
         low_mm, high_mm = sensor.bounds_mm
         self._middle_mm = 0.5 * (low_mm + high_mm)
         self._radius_mm = 0.5 * float(np.linalg.norm(high_mm - low_mm))
-        # About which the wrench counts.
+        # The reference point of the wrench.
         self._center_mm = np.array([*self._middle_mm[:2], high_mm[2]])
-        # The parts of a body do not feel each other.
+        # The parts of one rigid body do not touch each other.
         weld = model.body_weldid
         self._can_touch = weld[self._body][:, None] != weld[self._geoms.body][None, :]
         self._readings_kpa = np.zeros((n_worlds, len(self._site), len(gel.ports_mm)), np.float32)
         self._wrench = np.zeros((n_worlds, len(self._site), 6), np.float32)
+        self._slip_mm_per_s = np.zeros((n_worlds, len(self._site), 2), np.float32)
 
     def __repr__(self) -> str:
         worlds = "one world" if self._worlds.n_worlds == 1 else f"{self._worlds.n_worlds} worlds"
@@ -139,36 +147,54 @@ class TouchSensors:
 
     @property
     def provenance(self) -> str:
-        """What every reading is: simulated."""
+        """Provenance of every reading: `"simulated"`."""
         return self._batch.provenance
 
     @property
     def readings_kpa(self) -> npt.NDArray[np.float32]:
-        """What the sensors read last, kPa, `[n_worlds, n_sensors, n_taxels]`; 0 after a reset. NaN
-        where nobody knows what touches: where the pose of the sensor, or of a geom that can
-        touch it, is not finite.
+        """The last readings, kPa, `[n_worlds, n_sensors, n_taxels]`; 0 after a reset. A sensor has
+        NaN if its pose, or that of a geom that can touch it, is not finite.
         """
         return self._readings_kpa
 
     @property
     def wrench(self) -> npt.NDArray[np.float32]:
-        """Force on each gel, N, and torque about the top of its middle, N mm, in the frame of the
-        gel, `[n_worlds, n_sensors, 6]`; NaN where readings are.
+        """Force on each gel, N, and torque about the top of the gel's middle, N mm, in the frame of
+        the gel, `[n_worlds, n_sensors, 6]`; NaN where the readings are NaN.
         """
         return self._wrench
 
+    def read_ground_truth(self) -> npt.NDArray[np.float32]:
+        """The last readings without sensor variation, kPa, `[n_worlds, n_sensors, n_taxels]`: those
+        of a perfect sensor, beside the imperfect ones.
+        """
+        return self._batch.read_ground_truth().reshape(self._readings_kpa.shape)
+
+    @property
+    def slip_mm_per_s(self) -> npt.NDArray[np.float32]:
+        """The slip velocity of what touches each sensor, mm/s, along x and y of the gel, `[n_worlds,
+        n_sensors, 2]`: of several geoms the fastest one, and 0 if all stick.
+        """
+        return self._slip_mm_per_s
+
     def update(self, data: Data) -> npt.NDArray[np.float32]:
-        """One more time step: reads where geoms are, and writes what gels do to bodies into
-        `qfrc_applied`, in place of what the last update wrote there. Returns `readings_kpa`.
+        """Makes one time step: reads the poses of the geoms, and writes the forces of the gels on
+        bodies into `qfrc_applied`, in place of those of the last update.
 
-        A world whose time has gone back begins anew, as after `reset`. A second call at the same
-        time changes what is pushed, and adds nothing.
+        A world whose time has gone back starts anew, as after `reset`. A second call at the same
+        time replaces the forces, and adds nothing.
 
-        Raises `ValueError`, with nothing done, for data of another model or number of worlds; if
-        more than one time step has passed; if others have written to `qfrc_applied` where gels
-        push;
-        and for a model with force or torque sensors of MuJoCo that should feel the gels: they do
-        within `pushing`.
+        Args:
+            data: the data of the world, or the batch of the worlds.
+
+        Returns:
+            `readings_kpa`.
+
+        Raises:
+            ValueError: for data of another model or number of worlds; if more than one time step
+                has passed; if others have written to the part of `qfrc_applied` that the gels use;
+                and for a model with force or torque sensors of MuJoCo that would have to measure
+                the gels, which they do within `pushing` only. Nothing is changed then.
         """
         if self._unfelt_by is not None:
             raise ValueError(f"MuJoCo's force sensor `{self._unfelt_by}` does not feel what gels push with `update`: step within `with touch.pushing(data):`")
@@ -178,20 +204,26 @@ class TouchSensors:
 
     @contextmanager
     def pushing(self, data: Data) -> Iterator[npt.NDArray[np.float32]]:
-        """`update` for a step that is made inside of the `with` block:
+        """Does the same as `update`, for a step that is made inside of the `with` block:
 
             mujoco.mj_step1(model, data)
             with touch.pushing(data) as readings_kpa:
                 mujoco.mj_step2(model, data)
 
-        or `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)` for a batch. What gels do to bodies is
-        added to `xfrc_applied`, and taken away again at the end of the block, so that MuJoCo's own
-        force
-        sensors feel it, and `qfrc_applied` is yours. Sensors of several kinds push together: `with
-        palm.pushing(data), tips.pushing(data):`.
+        With a batch, call `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)` inside of the block. The
+        forces of the gels are added to `xfrc_applied`, and subtracted at the end of the block. So
+        MuJoCo's own force sensors measure them, and `qfrc_applied` is free for your use. Sensors of
+        several kinds push together: `with palm.pushing(data), tips.pushing(data):`.
 
-        Raises `ValueError` as `update` does, and if `xfrc_applied` of bodies that are pushed is
-        written inside of the block: write it before.
+        Args:
+            data: the data of the world, or the batch of the worlds.
+
+        Yields:
+            `readings_kpa`.
+
+        Raises:
+            ValueError: as `update` does, and if `xfrc_applied` of pushed bodies is written inside
+                of the block; write it before the block.
         """
         touches = self._sense(data, is_updated=bool(self._push.written.any()))
         if self._push.written.any():
@@ -207,23 +239,32 @@ class TouchSensors:
             applied = self._worlds.rows(data, "xfrc_applied")
             stays = applied == written
             applied[stays] = others[stays]
-        # MuJoCo's reset of a world that went astray clears it.
+        # MuJoCo clears the field when it resets an unstable world.
         changed = ~stays.all((1, 2)) & (self._worlds.times_s(data) > before_s)
         if changed.any():
             world = int(np.nonzero(changed)[0][0])
             raise ValueError(f"`xfrc_applied` of world {world} was written inside of `pushing`, where what gels push stands in it: write it before")
 
     def reset(self, world: int | None = None) -> None:
-        """Lets the gels of a world, counted from 0, rest, or of all, with readings and wrenches of
-        zero: to be called when its data are set to another state.
+        """Resets the gels, readings and wrenches to zero. Call it when the data are set to another
+        state.
+
+        Args:
+            world: index of the world, from 0; all worlds unless given.
         """
         for number in self._numbers(world):
             self._rest(number)
             self._clock.last_s[number] = np.nan
 
     def state(self, world: int | None = None) -> TouchState:
-        """What sensors remember now, in a world, counted from 0, or in all: to be kept with the
-        state of the data. Both set back, the same steps give the same bits.
+        """The current state of the sensors, to be stored with the state of the data. If both are
+        restored, the same steps give the same bits.
+
+        Args:
+            world: index of the world, from 0; all worlds unless given.
+
+        Returns:
+            The state, for `set_state`.
         """
         numbers = self._numbers(world)
         return TouchState(
@@ -235,10 +276,14 @@ class TouchSensors:
         )
 
     def set_state(self, state: TouchState, world: int | None = None) -> None:
-        """Lets the sensors of a world, counted from 0, or of all go on from a state; that of one
-        world may be set in another one.
+        """Restores a state. The state of one world may be set in another world.
 
-        Raises `ValueError` for the state of another number of worlds, or of other sensors.
+        Args:
+            state: the result of `state`.
+            world: index of the world, from 0; all worlds unless given.
+
+        Raises:
+            ValueError: for the state of another number of worlds, or of other sensors.
         """
         numbers = self._numbers(world)
         if state._readings_kpa.shape != self._readings_kpa[numbers].shape or state._written.shape != self._push.written[numbers].shape:
@@ -253,8 +298,8 @@ class TouchSensors:
             self._push.restore(number, state._written[place])
 
     def _sense(self, data: Data, is_updated: bool) -> _Touches:
-        """Reads all sensors; `is_updated` if the last update's forces stand in the data. Nothing
-        has been done where it raises.
+        """Reads all sensors; `is_updated` says whether the data hold the forces of the last update.
+        If it raises, nothing has changed.
         """
         worlds = self._worlds
         worlds.look(data)
@@ -274,6 +319,11 @@ class TouchSensors:
         readings_kpa, wrench = self._batch.step(since_s, poses, body, ends, touch_id=touch_id)
         self._readings_kpa = readings_kpa.reshape(self._readings_kpa.shape)
         self._wrench = wrench.reshape(self._wrench.shape)
+        self._slip_mm_per_s = np.zeros_like(self._slip_mm_per_s)
+        slips = self._batch.slip_of_touches()
+        # Of several that are assigned to one sensor, the last one stays: the fastest.
+        order = np.argsort(np.linalg.norm(slips, axis=-1), kind="stable")
+        self._slip_mm_per_s[touches.world[order], touches.sensor[order]] = slips[order]
         for world, sensor in zip(*np.nonzero(unknown)):
             self._batch.rest(int(world) * len(self._site) + int(sensor))
             self._readings_kpa[world, sensor] = np.nan
@@ -282,8 +332,8 @@ class TouchSensors:
         return touches
 
     def _near(self, data: Data) -> tuple[_Touches, _Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-        """What is near enough to touch; where, as `gel_from_body`; which thing each is; and of
-        which sensors nobody knows, `[n_worlds, n_sensors]`.
+        """The contacts that are near enough to be evaluated; their poses, as `gel_from_body`; the
+        identities of the touches; and the sensors with unknown readings, `[n_worlds, n_sensors]`.
         """
         site_mm, site_turn, site_quat, site_is_there = self._places(data, "site", self._site)
         geom_mm, geom_turn, geom_quat, geom_is_there = self._places(data, "geom", self._geoms.number)
@@ -294,7 +344,7 @@ class TouchSensors:
             distance_mm = np.where(self._geoms.is_plane[:, None], above_mm, np.linalg.norm(to_geom_mm, axis=-1))
             near_mm = (self._geoms.radius_mm + self._radius_mm + _REACH_MM)[:, None]
         world, sensor, geom = np.nonzero(self._can_touch & (distance_mm < near_mm) & ~unknown[:, :, None])
-        # A plane is the same wherever its frame is, so that its slab follows a sensor, in strides.
+        # A plane may be shifted along itself, so its slab follows the sensor, in strides.
         strides, planes = np.zeros((len(world), 2)), self._geoms.is_plane[world, geom]
         if planes.any():
             along_mm = turned(geom_turn[world, geom].swapaxes(1, 2), -to_geom_mm[world, sensor, geom])
@@ -304,14 +354,14 @@ class TouchSensors:
         poses = np.empty((len(world), 7))
         poses[:, :3] = turned(site_turn[world, sensor].swapaxes(1, 2), place_mm - site_mm[world, sensor])
         poses[:, 3:] = multiply(turned_back(site_quat[world, sensor]), geom_quat[world, geom])[:, [1, 2, 3, 0]]
-        # Part by part of a plane, and geom by geom: what a sensor holds is one of them.
+        # A touch is identified by the geom and, for a plane, by the stride.
         along = (strides.astype(np.int64) & 0xFFFFF) @ np.array([1 << 20, 1])
         touch_id = along * self._can_touch.shape[1] + geom
         return _Touches(world, sensor, geom), poses, touch_id, unknown
 
     def _places(self, data: Data, kind: str, numbers: _Ints) -> tuple[_Array, _Array, _Array, npt.NDArray[np.bool_]]:
-        """Places, mm, turns as matrices and as quaternions, of sites or geoms in all worlds, and
-        which of them are finite.
+        """Positions, mm, rotations as matrices and as quaternions, of sites or geoms in all worlds,
+        and which of them are finite.
         """
         place_m, turn = (self._worlds.rows(data, f"{kind}_{name}")[:, numbers] for name in ("xpos", "xmat"))
         quat = self._worlds.quaternions(data, kind)[:, numbers]
@@ -321,7 +371,7 @@ class TouchSensors:
         return 1e3 * place_m, turn.reshape(*turn.shape[:2], 3, 3), quat, is_there
 
     def _wrenches(self, data: Data, touches: _Touches, about_m: _Array) -> _Array:
-        """What gels and bodies do to each other, as wrenches on bodies about points of theirs."""
+        """The forces between gels and bodies, as wrenches on bodies about the points `about_m`."""
         world, sensor, geom = touches
         site_mm, site_turn, _, _ = self._places(data, "site", self._site)
         on_gel, turn = self._batch.wrench_of_touches().astype(float), site_turn[world, sensor]
@@ -334,6 +384,8 @@ class TouchSensors:
             self._batch.rest(sensor)
         self._readings_kpa, self._wrench = self._readings_kpa.copy(), self._wrench.copy()
         self._readings_kpa[world], self._wrench[world] = 0.0, 0.0
+        self._slip_mm_per_s = self._slip_mm_per_s.copy()
+        self._slip_mm_per_s[world] = 0.0
 
     def _sensors_of(self, world: int) -> range:
         return range(world * len(self._site), (world + 1) * len(self._site))
@@ -347,7 +399,7 @@ class TouchSensors:
 
 
 def _belonging(sensor: Sensor | None, gel: FastGel | None) -> tuple[Sensor, FastGel]:
-    """Sensor and gel, of which one tells the other where they are built in."""
+    """Sensor and gel. For a built-in sensor, one of them determines the other."""
     name = "phystac" if sensor is None and gel is None else sensor.name if sensor is not None else gel.sensor if gel is not None else ""
     if (sensor is None or gel is None) and name not in _BUILT_IN:
         known, missing = ("sensor", "gel") if gel is None else ("gel", "sensor")

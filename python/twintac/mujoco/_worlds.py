@@ -1,5 +1,4 @@
-"""One world or many: a `MjData`, or a persistent `Batch`; and the models that their worlds are of.
-"""
+"""One world (`MjData`) or many (a persistent `Batch`), and the models of these worlds."""
 
 import weakref
 from typing import TypeAlias
@@ -17,13 +16,14 @@ except ModuleNotFoundError:  # before MuJoCo 4
 
 _Array = npt.NDArray[np.float64]
 Data: TypeAlias = mujoco.MjData | Batch
-# What has to be the same for numbers of bodies, geoms and sites to mean the same.
+# Models must agree in these fields, so that indices of bodies, geoms and sites have the same
+# meaning.
 _SIZES = ("nbody", "nv", "ngeom", "nsite")
 _LAYOUT = ("body_parentid", "body_dofadr", "geom_bodyid", "site_bodyid")
 
 
 class Worlds:
-    """The worlds of data, which are of one model or of models with its layout."""
+    """The worlds of data; they have one model, or models with the same layout."""
 
     def __init__(self, model: mujoco.MjModel, n_worlds: int) -> None:
         self._model, self.n_worlds = model, n_worlds
@@ -31,28 +31,28 @@ class Worlds:
         self._copies: weakref.WeakKeyDictionary[Batch, mujoco.MjModel] = weakref.WeakKeyDictionary()
 
     def rows(self, data: Data, name: str) -> _Array:
-        """A field of every world, `[n_worlds, …]`; of one world, or of a batch's state, it can be
-        written.
+        """A field of every world, `[n_worlds, …]`; it is writable for one world, and for the state
+        of a batch.
         """
         rows: _Array = np.asarray(getattr(data, name))[None] if isinstance(data, mujoco.MjData) else data.bind(name)
         return rows
 
     def quaternions(self, data: Data, kind: str) -> _Array:
-        """Turns of sites or geoms as quaternions, which MuJoCo has since version 4."""
+        """Rotations of sites or geoms as quaternions; MuJoCo has them since version 4."""
         if hasattr(mujoco.MjData, f"{kind}_xquat"):
             return self.rows(data, f"{kind}_xquat")
         turn = self.rows(data, f"{kind}_xmat")
         return quaternion_of(turn.reshape(*turn.shape[:2], 3, 3))
 
     def times_s(self, data: Data) -> _Array:
-        """The time of every world, s, `[n_worlds]`, as a copy."""
+        """A copy of the time of every world, s, `[n_worlds]`."""
         return np.array([data.time]) if isinstance(data, mujoco.MjData) else np.array(data.bind("time"), float)
 
     def look(self, data: Data) -> None:
-        """Learns the models of the worlds, `models`: one of all, or one of each.
+        """Updates `models`: one for all worlds, or one for each.
 
-        Raises `ValueError` for data of another number of worlds, of another model, and for a batch
-        that is not persistent.
+        Raises `ValueError` for data of another number of worlds or of another model, and for a
+        batch that is not persistent.
         """
         if isinstance(data, mujoco.MjData):
             if self.n_worlds != 1:
@@ -67,11 +67,11 @@ class Worlds:
 
     @property
     def models(self) -> list[mujoco.MjModel]:
-        """The models that were found last: one of all worlds, or one of each."""
+        """The models that were found last: one for all worlds, or one for each."""
         return self._known
 
     def field(self, data: Data, name: str) -> _Array:
-        """A field of the models, `[1, …]` where all worlds have the same, else `[n_worlds, …]`."""
+        """A field of the models, `[1, …]` if it is the same in all worlds, else `[n_worlds, …]`."""
         if not isinstance(data, mujoco.MjData) and data.models is None:
             expanded = data.expanded(name)
             if expanded is not None:

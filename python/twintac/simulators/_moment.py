@@ -1,5 +1,5 @@
-"""One moment of all sensors of all worlds: from poses to readings and forces on bodies, a pure
-function of arrays.
+"""One time step of all sensors of all worlds: from poses to readings and forces on bodies, as a
+pure function of arrays.
 """
 
 from typing import Any, NamedTuple
@@ -8,70 +8,85 @@ from .. import arrays
 from ..arrays._namespace import Array, namespace
 from ._scene import Scene
 
-# Where a body touches nothing, mm.
+# A distance at which a body touches nothing, mm.
 _AWAY_MM = 1000.0
 
 
 class Poses(NamedTuple):
-    """Poses of a MuJoCo model in the world, m, with any leading dimensions."""
+    """Poses of sites, geoms and bodies in the world, m, with any leading dimensions."""
 
     site_m: Array
-    """`[..., n_sites, 3]`"""
+    """Positions of the sites, `[..., n_sites, 3]`."""
     site_rotation: Array
-    """`[..., n_sites, 3, 3]`"""
+    """Rotation matrices of the sites, `[..., n_sites, 3, 3]`."""
     geom_m: Array
+    """Positions of the geoms, `[..., n_geoms, 3]`."""
     geom_rotation: Array
+    """Rotation matrices of the geoms, `[..., n_geoms, 3, 3]`."""
     middle_m: Array
-    """The bodies' centres of mass, about which their torques count, `[..., n_bodies, 3]`."""
+    """Centres of mass of the bodies, reference points of torques, `[..., n_bodies, 3]`."""
 
 
 class Memory(NamedTuple):
-    """What the gels of the worlds remember: what `begin` returns, and `moment`."""
+    """The state of friction and damping of the gels of all worlds: the result of `begin` and
+    `moment`.
+    """
 
     time_s: Array
-    """The simulator's time of `now`, `[...]`."""
+    """The simulator's time of `now`, s, `[...]`."""
     passed_s: Array
-    """Since `before`."""
+    """Time from `before` to `now`, s, `[...]`."""
     before: arrays.Held
+    """The state of the gels one time step before `now`."""
     now: arrays.Held
+    """The state of the gels at `time_s`."""
 
 
 class Touch(NamedTuple):
-    """What sensors of the worlds feel at a moment. All is `simulated`."""
+    """The output of the sensors of all worlds at a time. All numbers are `simulated`."""
 
     pressure_kpa: Array
     """Pressure at each port, kPa, `[..., n_sensors, n_taxels]`."""
     wrench: Array
-    """Force on each gel, N, and torque about the top of its middle, N mm, in its frame, `[...,
-    n_sensors, 6]`."""
+    """Force on each gel, N, and torque about the top of the gel's middle, N mm, in the gel's frame,
+    `[..., n_sensors, 6]`.
+    """
     gap_mm: Array
-    """How far each geom is from each gel, mm, less than 0 in it, `[..., n_sensors, n_geoms]`."""
+    """Distance of each geom from each gel, mm, negative inside the gel,
+    `[..., n_sensors, n_geoms]`.
+    """
+    slip_mm_per_s: Array
+    """How fast each geom slips over each gel, mm/s, along x and y of the gel, `[..., n_sensors,
+    n_geoms, 2]`."""
     push: Array
     """Force, N, and torque about the centre of mass, N m, on each body of `Scene.body`, along the
-    axes of the world, `[..., n_bodies, 6]`."""
+    axes of the world, `[..., n_bodies, 6]`.
+    """
 
 
 def begin(scene: Scene, poses: Poses, time_s: Array) -> Memory:
-    """Gels that remember nothing, in as many worlds as poses have."""
+    """The initial state of the gels, in as many worlds as there are poses."""
     xp = namespace("gel", scene.gel.points_mm)
     position_mm, _ = _relative(xp, scene, poses)
     nothing = arrays.held(scene.gel, position_mm)
     time_s = xp.astype(time_s, nothing.force_n.dtype) + 0.0 * nothing.torque_n_mm[..., 0, 0]
-    # No time has passed yet: the first moment is one after nothing.
+    # No time has passed yet, so the first time step follows an empty state.
     return Memory(time_s - 1.0, xp.ones_like(time_s), nothing, nothing)
 
 
 def moment(scene: Scene, memory: Memory, poses: Poses, time_s: Array) -> tuple[Memory, Touch]:
-    """What gels do at poses, and what they then remember. At the time of the moment before it is
-    that moment again, with other poses: a second look changes nothing. Where time has gone back,
-    gels have forgotten everything.
+    """The new state and the output of the gels at poses. A call with the time of the previous call
+    replaces that time step, with the new poses: a repeated call with the same poses changes
+    nothing. Where time has gone back, the gels start anew.
     """
     xp = namespace("gel", scene.gel.points_mm)
     position_mm, rotation = _relative(xp, scene, poses)
     time_s = xp.astype(time_s, memory.time_s.dtype) + 0.0 * memory.time_s
     goes_on, goes_back = time_s > memory.time_s, time_s < memory.time_s
     nothing = arrays.held(scene.gel, position_mm)
-    before = _where(xp, goes_back, nothing, _where(xp, goes_on, memory.now, memory.before))
+    before = arrays.select(
+        goes_back, nothing, arrays.select(goes_on, memory.now, memory.before)
+    )
     passed_s = xp.where(goes_on, time_s - memory.time_s, memory.passed_s)
     now, reading = arrays.step(
         scene.gel, scene.friction, before, passed_s[..., None], scene.shapes, position_mm, rotation
@@ -80,23 +95,26 @@ def moment(scene: Scene, memory: Memory, poses: Poses, time_s: Array) -> tuple[M
         reading.pressure_kpa,
         reading.wrench,
         reading.gap_mm,
+        reading.slip_mm_per_s,
         _push(xp, scene, poses, reading.wrench_of_bodies),
     )
     return Memory(time_s, passed_s, before, now), touch
 
 
 def forget(memory: Memory, chosen: Array) -> Memory:
-    """The same, but for gels of chosen worlds, a mask `[...]`, which remember nothing."""
+    """The same state, with the gels of the chosen worlds (a mask, `[...]`) reset."""
     xp = namespace("chosen", chosen)
     before, now = (
-        _where(xp, chosen, arrays.Held(*(xp.zeros_like(part) for part in own)), own)
+        arrays.select(chosen, arrays.Held(*(xp.zeros_like(part) for part in own)), own)
         for own in (memory.before, memory.now)
     )
     return memory._replace(before=before, now=now)
 
 
 def _relative(xp: Any, scene: Scene, poses: Poses) -> tuple[Array, Array]:
-    """Poses of the geoms in the frames of the gels, `[..., n_sensors, n_geoms, 3]`, mm."""
+    """Poses of the geoms in the frames of the gels: positions, mm, `[..., n_sensors, n_geoms, 3]`,
+    and rotation matrices.
+    """
     position_mm, rotation = arrays.gel_from_body(
         xp.take(poses.site_m, scene.site, axis=-2),
         xp.take(poses.site_rotation, scene.site, axis=-3),
@@ -107,7 +125,9 @@ def _relative(xp: Any, scene: Scene, poses: Poses) -> tuple[Array, Array]:
 
 
 def _push(xp: Any, scene: Scene, poses: Poses, wrench: Array) -> Array:
-    """On bodies, of what each geom does to each gel, `[..., n_sensors, n_geoms, 6]`."""
+    """The wrenches on bodies, from the wrench of each geom on each gel,
+    `[..., n_sensors, n_geoms, 6]`.
+    """
     wrench = xp.where(scene.can_touch[..., None], wrench, 0.0)
     turn = xp.take(poses.site_rotation, scene.site, axis=-3)
     force_n = _turned(turn, wrench[..., :3])
@@ -126,8 +146,9 @@ def _push(xp: Any, scene: Scene, poses: Poses, wrench: Array) -> Array:
 
 
 def _turned(turn: Array, vector: Array) -> Array:
-    """Vectors `[..., n_sensors, n, 3]` by matrices `[..., n_sensors, 3, 3]`, without a matrix
-    product, which devices round."""
+    """Vectors `[..., n_sensors, n, 3]`, rotated by matrices `[..., n_sensors, 3, 3]`, without a
+    matrix product, which some devices round.
+    """
     columns = [turn[..., :, axis][..., None, :] * vector[..., axis, None] for axis in range(3)]
     turned: Array = columns[0] + columns[1] + columns[2]
     return turned
@@ -140,15 +161,5 @@ def _cross(xp: Any, a: Array, b: Array) -> Array:
 
 
 def _summed(xp: Any, wrench: Array, is_of: Array) -> Array:
-    """Of `[..., n, 6]`, sums `[..., n_bodies, 6]`."""
+    """Sums `[..., n_bodies, 6]` of `[..., n, 6]`."""
     return xp.sum(wrench[..., :, None, :] * is_of[..., None], axis=-3)
-
-
-def _where(xp: Any, chosen: Array, this: arrays.Held, other: arrays.Held) -> arrays.Held:
-    """Of each world, one of two memories."""
-
-    def one(a: Array, b: Array) -> Array:
-        wide = xp.reshape(chosen, (*chosen.shape, *(1 for _ in range(a.ndim - chosen.ndim))))
-        return xp.where(wide, a, b)
-
-    return arrays.Held(*(one(a, b) for a, b in zip(this, other)))

@@ -24,10 +24,10 @@ def scene_of(
     like: Array | None = None,
 ) -> Scene:
     """Sensors at sites that are the frames of their gels, as `twintac.mujoco.add_sensor` makes
-    them, and the geoms of these names, or all that collide.
+    them, and the geoms with the given names, or all that collide.
 
     Raises `ValueError` for a site or geom that the model does not have, and if no geom can touch;
-    `Error` for a geom that sensors do not feel.
+    `Error` for a geom of an unsupported shape.
     """
     site = np.array([number_of(model, "site", name) for name in sites], int)
     if geoms is None:
@@ -48,7 +48,7 @@ def scene_of(
 
 
 def _shape(model: mujoco.MjModel, geom: int) -> arrays.Shapes:
-    """A geom as a shape with its origin where the geom's is."""
+    """The shape of a geom, with the geom's origin."""
     kind, asset = int(model.geom_type[geom]), int(model.geom_dataid[geom])
     a_mm, b_mm, c_mm = (1e3 * float(length_m) for length_m in model.geom_size[geom])
     kinds = mujoco.mjtGeom

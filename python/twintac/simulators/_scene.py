@@ -1,4 +1,4 @@
-"""Sensors on bodies, and what can touch them, as arrays."""
+"""Sensors on bodies, and the geoms that can touch them, as arrays."""
 
 import os
 from collections.abc import Sequence
@@ -14,41 +14,41 @@ _Ints = npt.NDArray[np.intp]
 
 
 class Scene(NamedTuple):
-    """Sensors at sites of a model, and the geoms that can touch them: what `scene` returns."""
+    """Sensors at sites of a model, and the geoms that can touch them: the result of `scene`."""
 
     gel: arrays.Gel
     friction: arrays.Friction
     shapes: arrays.Shapes
-    """Of the geoms that can touch, `[n_geoms]`."""
+    """Shapes of the geoms that can touch, `[n_geoms]`."""
     site: Array
-    """Numbers of the sites, `[n_sensors]`."""
+    """Indices of the sites, `[n_sensors]`."""
     geom: Array
-    """Numbers of the geoms that can touch, `[n_geoms]`."""
+    """Indices of the geoms that can touch, `[n_geoms]`."""
     can_touch: Array
     """Which geom can touch which sensor, `[n_sensors, n_geoms]`."""
     body: Array
-    """Numbers of the bodies that are pushed, `[n_bodies]`."""
+    """Indices of the bodies that are pushed, `[n_bodies]`."""
     body_of_geom: Array
-    """Number of the body of each geom that can touch, `[n_geoms]`."""
+    """Index of the body of each geom that can touch, `[n_geoms]`."""
     body_of_sensor: Array
-    """Number of the body of each sensor, `[n_sensors]`."""
+    """Index of the body of each sensor, `[n_sensors]`."""
     geom_is_of: Array
-    """1 where a geom is of a pushed body, `[n_geoms, n_bodies]`."""
+    """1 where a geom belongs to a pushed body, `[n_geoms, n_bodies]`."""
     sensor_is_of: Array
-    """1 where a sensor is of a pushed body, `[n_sensors, n_bodies]`."""
+    """1 where a sensor belongs to a pushed body, `[n_sensors, n_bodies]`."""
 
 
 class Places(NamedTuple):
-    """Where sensors and geoms that can touch are in a model, by numbers."""
+    """The sensors of a model and the geoms that can touch them, by indices."""
 
     site: _Ints
     geom: _Ints
     body_of_sensor: _Ints
     body_of_geom: _Ints
     moves: npt.NDArray[np.bool_]
-    """Of each body, whether anything moves it."""
+    """For each body, whether it can move."""
     part_of: _Ints
-    """Of each body, which rigid part it is of: parts do not touch themselves."""
+    """For each body, the rigid part to which it belongs: a part does not touch itself."""
 
 
 def scene(
@@ -59,10 +59,10 @@ def scene(
     retardation_s: float,
     like: Array | None,
 ) -> Scene:
-    """Arrays of the library, the precision and the device of `like`; see the adapters for the
+    """The scene as arrays of the library, precision and device of `like`; the adapters describe the
     arguments.
 
-    Raises `ValueError` where there is nothing to touch, or nothing that moves.
+    Raises `ValueError` if there is nothing to touch, or nothing that moves.
     """
     if not len(places.site) or not len(places.geom):
         has_none = "`sites` has none" if not len(places.site) else "there is no shape that can touch"

@@ -1,12 +1,14 @@
-"""Touch as a sensor of mjlab: needs `mjlab`.
+"""Touch as a sensor of mjlab. It needs `mjlab`.
 
     palm = TouchSensorCfg("touch", bodies=("hand/palm",), geoms=("block/block",))
     scene = Scene(SceneCfg(entities={...}, sensors=(palm,)), device)
     ...
     scene["touch"].data.pressure_kpa  # [n_envs, n_sensors, n_taxels], a tensor
 
-An observation is a function of the environment, which mjlab delays and keeps a history of as its
-configuration says: `lambda env: env.scene["touch"].data.pressure_kpa.flatten(1)`.
+An observation is a function of the environment. Its delay and its history are set in mjlab's
+configuration:
+
+    lambda env: env.scene["touch"].data.pressure_kpa.flatten(1)
 """
 
 from dataclasses import dataclass
@@ -27,39 +29,40 @@ __all__ = ["Touch", "TouchSensor", "TouchSensorCfg"]
 
 @dataclass
 class TouchSensorCfg(SensorCfg):  # type: ignore[misc, unused-ignore]
-    """Sensors of one kind in a scene, to stand in `SceneCfg.sensors`. On a GPU, where mjlab captures
-    steps, they have not been tried.
+    """Sensors of one kind in a scene, for `SceneCfg.sensors`. They have not been tried on a GPU,
+    where mjlab captures steps.
     """
 
     bodies: tuple[str, ...] = ()
-    """Names of the bodies that they stand on, as the scene has them: `entity/body`."""
+    """Names of the bodies that carry the sensors, as in the scene: `entity/body`."""
     geoms: tuple[str, ...] | None = None
     """Names of the geoms that can touch, `entity/geom`; all that collide unless given. They need no
-    collisions in MuJoCo."""
+    collisions in MuJoCo.
+    """
     position_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where the gel's frame is in that of each body, mm."""
+    """Position of the gel's frame in the frame of each body, mm."""
     quaternion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
-    """How it is turned there, `(x, y, z, w)`."""
+    """Orientation of the gel's frame in the frame of each body, `(x, y, z, w)`."""
     sensor: Sensor | None = None
-    """PhysTac unless given."""
+    """The description of the sensors; PhysTac unless given."""
     gel: FastGel | None = None
-    """Its fast gel; PhysTac's unless given."""
+    """The surrogate of the gel; PhysTac's unless given."""
     friction: float = 0.8
     """Coulomb's coefficient of every body on every gel."""
     retardation_s: float = 0.005
-    """The loss of the gel, s, see `twintac.Coupling`."""
+    """Time constant of the gel's damping, s, see `twintac.Coupling`."""
 
     def build(self) -> "TouchSensor":
-        """The sensors, as mjlab makes them."""
+        """Makes the sensors; mjlab calls it."""
         return TouchSensor(self)
 
 
 class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
-    """What `TouchSensorCfg` makes. Its `data` are what was felt in the last substep or `forward`. In
-    environments that are reset, gels forget everything.
+    """The sensors that `TouchSensorCfg` makes. `data` has the output of the last substep or
+    `forward`. The gels of environments that are reset start anew.
 
-    `xfrc_applied` of the bodies that gels push is theirs: forces of your own on them, such as
-    `Entity.write_external_wrench_to_sim` would write, stand in `sensors.applied`.
+    The sensors overwrite `xfrc_applied` of the bodies that the gels push. Write your own forces on
+    these bodies into `sensors.applied`, instead of with `Entity.write_external_wrench_to_sim`.
     """
 
     def __init__(self, cfg: TouchSensorCfg) -> None:
@@ -68,7 +71,7 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         self.sensors: Sensors
 
     def edit_spec(self, scene_spec: mujoco.MjSpec, entities: dict[str, Any]) -> None:
-        """Puts the sensors onto their bodies."""
+        """Adds the sensors to their bodies."""
         sensor = self.cfg.sensor or Sensor.phystac()
         for body, site in zip(self.cfg.bodies, self._sites()):
             add_sensor(
@@ -81,9 +84,11 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
             )
 
     def initialize(self, mj_model: mujoco.MjModel, model: Any, data: Any, device: str) -> None:
-        """Lets MuJoCo Warp call the sensors in each step, after what it calls already."""
+        """Registers the sensors with MuJoCo Warp, which calls them in each step, after the callback
+        that was registered before.
+        """
         cfg = self.cfg
-        # Those of MuJoCo Warp, which mjlab wraps.
+        # The objects of MuJoCo Warp, which mjlab wraps.
         model, data = (getattr(own, "struct", own) for own in (model, data))
         self.sensors = Sensors(
             mj_model,
@@ -104,7 +109,7 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         model.callback.control = control
 
     def reset(self, env_ids: torch.Tensor | slice | None = None) -> None:
-        """Gels of these environments, or of all, forget everything."""
+        """Resets the gels of these environments, or of all."""
         super().reset(env_ids)
         self.sensors.forget(env_ids)
 

@@ -1,11 +1,11 @@
-"""Touch in MuJoCo XLA (MJX), with JAX: needs `mujoco-mjx`.
+"""Touch in MuJoCo XLA (MJX), with JAX. It needs `mujoco-mjx`.
 
     sensors = mjx_touch.put(model, ["palm"])
     memory = sensors.begin(mx, data)
     data, memory, touch = sensors.step(mx, data, memory)
 
-All are pure functions of one world; worlds are many by `jax.vmap`, and it may be compiled and
-differentiated as MJX itself.
+All functions are pure functions of one world. `jax.vmap` makes them functions of many worlds. They
+can be compiled and differentiated as MJX itself.
 """
 
 import os
@@ -26,26 +26,54 @@ __all__ = ["Memory", "Scene", "Sensors", "Touch", "put"]
 
 
 class Sensors(NamedTuple):
-    """Sensors on bodies of a model: what `put` returns. It is a tuple of arrays, so that it may be
-    an argument of compiled functions."""
+    """Sensors on bodies of a model: the result of `put`. It is a tuple of arrays, so that it may be
+    an argument of compiled functions.
+    """
 
     scene: Scene
 
     def begin(self, model: mjx.Model, data: mjx.Data) -> Memory:
-        """Gels that remember nothing, at the time of `data`: at first, and after a reset."""
+        """The initial state of the gels, at the time of `data`: at first, and after a reset.
+
+        Args:
+            model: the model on the device.
+            data: the data of the world.
+
+        Returns:
+            The state, for `look` and `step`.
+        """
         return begin(self.scene, _poses(mjx.kinematics(model, data)), data.time)
 
     def look(self, model: mjx.Model, data: mjx.Data, memory: Memory) -> tuple[Memory, Touch]:
-        """What sensors feel at the pose of `data`, and what gels then remember. A second look at
-        the same time changes nothing; where time has gone back, gels have forgotten everything."""
+        """The output of the sensors at the pose of `data`. A repeated call at the same time changes
+        nothing. If time has gone back, the gels start anew.
+
+        Args:
+            model: the model on the device.
+            data: the data of the world.
+            memory: the state of the gels.
+
+        Returns:
+            The new state, and the output.
+        """
         return moment(self.scene, memory, _poses(mjx.kinematics(model, data)), data.time)
 
     def step(
         self, model: mjx.Model, data: mjx.Data, memory: Memory
     ) -> tuple[mjx.Data, Memory, Touch]:
-        """One time step in which gels push: the data after it, what gels remember, and what sensors
-        felt at its beginning. `xfrc_applied` stays yours: what gels do is added for this step
-        alone. Steps of 2 ms or less keep bodies of 20 g and more at rest on a gel."""
+        """Makes one time step in which gels push. `xfrc_applied` keeps your values: the forces of
+        the gels are added for this step alone. With steps of 2 ms or less, bodies of 20 g and more
+        stay at rest on a gel.
+
+        Args:
+            model: the model on the device.
+            data: the data of the world.
+            memory: the state of the gels.
+
+        Returns:
+            The data after the step, the new state of the gels, and the output of the sensors at the
+                beginning of the step.
+        """
         memory, touch = self.look(model, data, memory)
         applied = data.xfrc_applied
         pushed = data.replace(xfrc_applied=applied.at[self.scene.body].add(touch.push))
@@ -61,16 +89,24 @@ def put(
     retardation_s: float = 0.005,
     geoms: Sequence[str] | None = None,
 ) -> Sensors:
-    """Sensors at sites of a model, which `twintac.mujoco.add_sensor` makes, on JAX's device.
+    """Puts sensors at sites of a model onto JAX's device. `twintac.mujoco.add_sensor` makes such
+    sites.
 
-    - `gel`: what `arrays.load` takes; PhysTac's unless given.
-    - `friction`: Coulomb's coefficient of every body on every gel.
-    - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
-    - `geoms`: names of the geoms that can touch; all that collide unless given. Those of the
-      sensor's own body never do. A geom that can touch needs no collisions in MuJoCo.
+    Args:
+        model: the model.
+        sites: names of the sites.
+        gel: the surrogate of the gel, as `arrays.load` takes it; PhysTac's unless given.
+        friction: Coulomb's coefficient of every body on every gel.
+        retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
+        geoms: names of the geoms that can touch; all that collide unless given. Geoms of the
+            sensor's own body never touch it. A geom that can touch needs no collisions in MuJoCo.
 
-    Raises `ValueError` for a site or geom that the model does not have, and if no geom can touch;
-    `Error` for a geom that sensors do not feel.
+    Returns:
+        The sensors.
+
+    Raises:
+        ValueError: for a site or geom that the model does not have, and if no geom can touch.
+        Error: for a geom of an unsupported shape.
     """
     kept = {"friction": friction, "retardation_s": retardation_s, "geoms": geoms}
     return Sensors(scene_of(model, sites, gel=gel, like=jnp.zeros(0, jnp.float32), **kept))  # type: ignore[arg-type]

@@ -1,12 +1,12 @@
-"""Touch in MuJoCo Warp, with PyTorch on the device of its data: needs `mujoco-warp` and `torch`.
+"""Touch in MuJoCo Warp, with PyTorch on the device of its data. It needs `mujoco-warp` and `torch`.
 
     sensors = Sensors(model, data, ["palm"])  # of a mujoco.MjModel, and data of MuJoCo Warp
     warp_model.callback.control = sensors
     mujoco_warp.step(warp_model, data)
     sensors.touch.pressure_kpa                # [n_worlds, n_sensors, n_taxels], a tensor
 
-MuJoCo Warp calls it in each step, when poses are known and forces are not. Inside of a captured
-CUDA graph it has not been tried.
+MuJoCo Warp calls the sensors in each step, when poses are known and forces are not. They have not
+been tried inside of a captured CUDA graph.
 """
 
 import os
@@ -25,21 +25,27 @@ __all__ = ["Memory", "Sensors", "Touch"]
 
 
 class Sensors:
-    """Sensors at sites of a model, which `twintac.mujoco.add_sensor` makes, in all worlds of `data`.
+    """Sensors at sites of a model, in all worlds of `data`. `twintac.mujoco.add_sensor` makes such
+    sites.
 
-    - `gel`: what `arrays.load` takes; PhysTac's unless given.
-    - `friction`: Coulomb's coefficient of every body on every gel.
-    - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
-    - `geoms`: names of the geoms that can touch; all that collide unless given. Those of the
-      sensor's own body never do. A geom that can touch needs no collisions in MuJoCo.
+    The sensors overwrite `xfrc_applied` of the bodies that the gels push. Write your own forces on
+    these bodies into `applied`. A repeated call at the same time changes nothing. In a world whose
+    time has gone back, the gels start anew. With steps of 2 ms or less, bodies of 20 g and more
+    stay at rest on a gel.
 
-    `xfrc_applied` of the bodies that gels push is theirs: forces of your own on them stand in
-    `applied`. A second look at the same time changes nothing, and in a world whose time has gone
-    back, gels have forgotten everything. Steps of 2 ms or less keep bodies of 20 g and more at rest
-    on a gel.
+    Args:
+        model: the model.
+        data: the data of MuJoCo Warp.
+        sites: names of the sites.
+        gel: the surrogate of the gel, as `arrays.load` takes it; PhysTac's unless given.
+        friction: Coulomb's coefficient of every body on every gel.
+        retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
+        geoms: names of the geoms that can touch; all that collide unless given. Geoms of the
+            sensor's own body never touch it. A geom that can touch needs no collisions in MuJoCo.
 
-    Raises `ValueError` for a site or geom that the model does not have, and if no geom can touch;
-    `Error` for a geom that sensors do not feel.
+    Raises:
+        ValueError: for a site or geom that the model does not have, and if no geom can touch.
+        Error: for a geom of an unsupported shape.
     """
 
     def __init__(
@@ -57,15 +63,22 @@ class Sensors:
         kept: dict[str, Any] = {"friction": friction, "retardation_s": retardation_s}
         self.scene = scene_of(model, sites, gel=gel, geoms=geoms, like=time_s, **kept)
         self.memory: Memory = begin(self.scene, _poses(data), time_s)
-        """What gels remember; it may be set to what it was."""
+        """The state of the gels; it may be set to an earlier state."""
         self.applied = torch.zeros_like(wp.to_torch(data.xfrc_applied))
-        """Forces of your own on the bodies that gels push, as `xfrc_applied` has them: force, N,
-        and torque, N m, `[n_worlds, n_bodies, 6]`."""
+        """Your own forces on the bodies that the gels push, as in `xfrc_applied`: force, N, and
+        torque, N m, `[n_worlds, n_bodies, 6]`.
+        """
         _, self.touch = moment(self.scene, self.memory, _poses(data), time_s)
-        """What sensors felt last."""
+        """The last output of the sensors."""
 
     def __call__(self, model: Any, data: Any) -> None:
-        """Looks at the poses of `data`, and writes what gels do to bodies into `xfrc_applied`."""
+        """Reads the poses of `data`, and writes the forces of the gels on bodies into
+        `xfrc_applied`.
+
+        Args:
+            model: the model of MuJoCo Warp, which is not used.
+            data: the data of MuJoCo Warp.
+        """
         with torch.no_grad():
             time_s = wp.to_torch(data.time)
             self.memory, self.touch = moment(self.scene, self.memory, _poses(data), time_s)
@@ -73,7 +86,11 @@ class Sensors:
             wp.to_torch(data.xfrc_applied)[:, body] = self.applied[:, body] + self.touch.push
 
     def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
-        """Gels of these worlds, numbers or a mask, or of all, remember nothing."""
+        """Resets the gels.
+
+        Args:
+            worlds: indices of the worlds, or a mask; all worlds unless given.
+        """
         chosen = torch.zeros_like(self.memory.time_s, dtype=torch.bool)
         chosen[slice(None) if worlds is None else worlds] = True
         self.memory = forget(self.memory, chosen)

@@ -1,12 +1,12 @@
-"""Touch in Newton, with PyTorch on the device of its state: needs `newton` and `torch`.
+"""Touch in Newton, with PyTorch on the device of its state. It needs `newton` and `torch`.
 
     sensors = Sensors(model, ["*touch"], shapes=["*block"])  # sites and shapes, by their labels
     state.clear_forces()
     touch = sensors.push(state, dt)                          # adds to state.body_f
     solver.step(state, state_after, control, contacts, dt)
 
-Each site is the frame of a gel, z out of the board: `builder.add_site`. Inside of a captured CUDA
-graph it has not been tried.
+Each site (`builder.add_site`) is the frame of a gel, with z out of the board. The sensors have not
+been tried inside of a captured CUDA graph.
 """
 
 import os
@@ -29,20 +29,24 @@ _Ints = npt.NDArray[np.intp]
 
 
 class Sensors:
-    """Sensors in all worlds of a model, which are alike.
+    """Sensors in all worlds of a model. The worlds must be alike.
 
-    - `sites`, `shapes`: labels, or patterns of labels with `*`, of the sites and of the shapes that
-      can touch, in each world as many. Shapes outside of all worlds can touch in each. Those of the
-      sensor's own body never do. Let shapes that touch gels not collide with the sensor's body,
-      which would carry them in place of the gel.
-    - `gel`: what `arrays.load` takes; PhysTac's unless given.
-    - `friction`: Coulomb's coefficient of every body on every gel.
-    - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
+    Shapes that touch gels should not collide with the sensor's body: the body would carry them
+    instead of the gel. With steps of 2 ms or less, bodies of 20 g and more stay at rest on a gel.
 
-    Steps of 2 ms or less keep bodies of 20 g and more at rest on a gel.
+    Args:
+        model: the model.
+        sites: labels of the sites, or patterns of labels with `*`; the same number in each world.
+        shapes: labels of the shapes that can touch, or patterns; the same number in each world.
+            Shapes outside of all worlds can touch in each world. Shapes of the sensor's own body
+            never touch it.
+        gel: the surrogate of the gel, as `arrays.load` takes it; PhysTac's unless given.
+        friction: Coulomb's coefficient of every body on every gel.
+        retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
 
-    Raises `ValueError` for labels that nothing has, worlds that differ, and shapes that sensors do
-    not feel.
+    Raises:
+        ValueError: for labels that nothing has, worlds that differ, and shapes of unsupported
+            types.
     """
 
     def __init__(
@@ -57,7 +61,8 @@ class Sensors:
     ) -> None:
         site, shape = _in_worlds(model, "sites", sites), _in_worlds(model, "shapes", shapes)
         body = model.shape_body.numpy()
-        # Bodies of the first world, those outside of all worlds among them, stand for all.
+        # The bodies of the first world stand for those of all worlds; bodies outside of all worlds
+        # are among them.
         own = np.unique(np.concatenate([[-1], body[site[0]], body[shape[0]]]))
         chosen = np.concatenate([site, shape], axis=1)
         local = np.searchsorted(own, body[chosen[0]])
@@ -73,7 +78,7 @@ class Sensors:
         felt = [_shape(model, shape[:, place]) for place in range(shape.shape[1])]
         like = wp.to_torch(model.body_q)
         self.scene = scene(places, felt, gel, friction, retardation_s, like)
-        # Of each world, the numbers of the bodies that stand in these places.
+        # For each world, the indices of the corresponding bodies.
         in_worlds = np.full((len(chosen), len(own)), -1)
         for place, number in enumerate(local):
             in_worlds[:, number] = body[chosen[:, place]]
@@ -84,14 +89,23 @@ class Sensors:
         self._n_sites = n_sites
         start_s = torch.zeros(len(chosen), device=like.device)
         self.memory: Memory = begin(self.scene, self._poses(model.body_q), start_s)
-        """What gels remember; it may be set to what it was."""
+        """The state of the gels; it may be set to an earlier state."""
 
     def push(self, state: newton.State, dt: float) -> Touch:
-        """What sensors feel at the poses of a state, `dt` s after the last call; what gels do to
-        bodies is added to `state.body_f`: call `state.clear_forces()` before, and step after."""
+        """Reads the sensors, and adds the forces of the gels on bodies to `state.body_f`. Call
+        `state.clear_forces()` before, and make the solver's step afterwards.
+
+        Args:
+            state: the state with the poses.
+            dt: time since the last call, s.
+
+        Returns:
+            The output of the sensors.
+        """
         with torch.no_grad():
             poses = self._poses(state.body_q)
-            # Newton has no time of its own: each call begins at 0, so that none is rounded.
+            # Newton has no time of its own. Each call begins at time 0, so that times are not
+            # rounded.
             start_s = torch.zeros_like(self.memory.time_s)
             memory = self.memory._replace(time_s=start_s)
             self.memory, touch = moment(self.scene, memory, poses, start_s + dt)
@@ -100,13 +114,19 @@ class Sensors:
         return touch
 
     def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
-        """Gels of these worlds, numbers or a mask, or of all, remember nothing."""
+        """Resets the gels.
+
+        Args:
+            worlds: indices of the worlds, or a mask; all worlds unless given.
+        """
         chosen = torch.zeros_like(self.memory.time_s, dtype=torch.bool)
         chosen[slice(None) if worlds is None else worlds] = True
         self.memory = forget(self.memory, chosen)
 
     def _poses(self, body_q: Any) -> Poses:
-        """Of sites, shapes and bodies, from those of bodies: place, m, and quaternion, w last."""
+        """Poses of sites, shapes and bodies, from those of bodies: position, m, and quaternion, w
+        last.
+        """
         of_body = wp.to_torch(body_q)
         still = torch.tensor([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], device=of_body.device)
 
@@ -126,7 +146,7 @@ class Sensors:
 
 
 def _in_worlds(model: newton.Model, field: str, labels: list[str]) -> _Ints:
-    """Numbers of shapes with these labels, `[n_worlds, n]`."""
+    """Indices of the shapes with these labels, `[n_worlds, n]`."""
     has_one = (any(fnmatchcase(own, label) for label in labels) for own in model.shape_label)
     found = np.flatnonzero(np.fromiter(has_one, bool))
     if not len(found):
@@ -142,7 +162,7 @@ def _in_worlds(model: newton.Model, field: str, labels: list[str]) -> _Ints:
 
 
 def _shape(model: newton.Model, numbers: _Ints) -> arrays.Shapes:
-    """A shape, which is the same in all worlds, with its origin where Newton has it."""
+    """The shape, which is the same in all worlds, with Newton's origin."""
     first, label = int(numbers[0]), model.shape_label[int(numbers[0])]
     scales, kinds = model.shape_scale.numpy()[numbers], model.shape_type.numpy()[numbers]
     sources = {id(model.shape_source[int(number)]) for number in numbers}

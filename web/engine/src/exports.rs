@@ -1,9 +1,12 @@
-//! What the WebAssembly module shows to a page: one engine, a buffer for requests, and one for answers.
+//! Functions that the WebAssembly module exports to a page: one engine, a buffer for requests, and
+//! one for answers.
 //!
-//! A page writes a request, and the bytes of a file after it, to where [`buffer`] says, calls [`answer`], and reads the answer from where
-//! [`answer_start`] says. Arrays lie where [`array_start`] says until the next request. Where the module traps, [`fault_start`] has the reason.
+//! A page writes a request, and the bytes of a file after it, to the address that [`buffer`]
+//! returns, calls [`answer`], and reads the answer at the address that [`answer_start`] returns.
+//! Arrays are at the addresses of [`array_start`] until the next request. If the module traps,
+//! [`fault_start`] is the address of the reason.
 
-#![allow(unsafe_code)] // names that stay as they are; nothing is read or written here through a pointer
+#![allow(unsafe_code)] // exported names are not mangled; no code here reads or writes through a pointer
 
 use std::cell::RefCell;
 
@@ -16,7 +19,7 @@ thread_local! {
     static FAULT: RefCell<String> = RefCell::default();
 }
 
-/// Makes room for a request and the bytes after it; where it lies.
+/// Reserves room for a request and the bytes after it, and returns its address.
 #[unsafe(no_mangle)]
 extern "C" fn buffer(length: usize) -> *mut u8 {
     BUFFER.with_borrow_mut(|buffer| {
@@ -26,7 +29,8 @@ extern "C" fn buffer(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request that is the first part of the buffer; the answer's length in bytes.
+/// Answers the request in the first `request_length` bytes of the buffer, and returns the length of
+/// the answer in bytes.
 #[unsafe(no_mangle)]
 extern "C" fn answer(request_length: usize) -> usize {
     std::panic::set_hook(Box::new(|fault| FAULT.set(fault.to_string())));
@@ -39,19 +43,19 @@ extern "C" fn answer(request_length: usize) -> usize {
     length
 }
 
-/// Where the answer lies.
+/// Address of the answer.
 #[unsafe(no_mangle)]
 extern "C" fn answer_start() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())
 }
 
-/// How many numbers an array has, four bytes each.
+/// Number of entries of an array, four bytes each.
 #[unsafe(no_mangle)]
 extern "C" fn array_length(number: usize) -> usize {
     of_array(number, |start_and_length| start_and_length.1)
 }
 
-/// Where an array lies.
+/// Address of an array.
 #[unsafe(no_mangle)]
 extern "C" fn array_start(number: usize) -> *const u8 {
     of_array(number, |start_and_length| start_and_length.0)
@@ -71,13 +75,13 @@ fn of_array<T>(number: usize, of: impl Fn((*const u8, usize)) -> T) -> T {
     })
 }
 
-/// Where the text lies that says why the module trapped.
+/// Address of the text that says why the module trapped.
 #[unsafe(no_mangle)]
 extern "C" fn fault_start() -> *const u8 {
     FAULT.with_borrow(|fault| fault.as_ptr())
 }
 
-/// Its length in bytes.
+/// Length of that text in bytes.
 #[unsafe(no_mangle)]
 extern "C" fn fault_length() -> usize {
     FAULT.with_borrow(|fault| fault.len())

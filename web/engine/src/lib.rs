@@ -1,4 +1,5 @@
-//! The engine of a sensor's gel (`crates/app/engine`) as a WebAssembly module: `exports` is what it shows to a page.
+//! The engine of the interactive page (`crates/app/engine`) as a WebAssembly module. The module
+//! `exports` has the functions that a page calls.
 
 #[cfg(target_arch = "wasm32")]
 mod exports;

@@ -1,12 +1,14 @@
 //! Files that import each other in a circle.
 //!
-//! A file imports another if it names something that the other defines, outside its tests: in a `use`, or by a path in its code. What counts is the
-//! file that defines the thing, not the one that a re-export passes it on through: `crate::linear::Solver` is an import of the file of `Solver`, and
-//! a `mod.rs` that does no more than `pub use` its files' names imports none of them. A module that is named only to reach something in it is no
-//! import either.
+//! A file imports another if it names something that the other defines, outside its tests: in a
+//! `use`, or by a path in its code. What counts is the file that defines the thing, not the one
+//! that a re-export passes it on through: `crate::linear::Solver` is an import of the file of
+//! `Solver`, and a `mod.rs` that does no more than `pub use` its files' names imports none of them.
+//! A module that is named only to reach something in it is no import either.
 //!
-//! Between files of different folders no circle is allowed. Files of one folder may form one where the comment `// circle: why` stands at the
-//! end of the line that closes it, or on the line above: that file's imports of the other one do not count then.
+//! Between files of different folders no circle is allowed. Files of one folder may form one where
+//! the comment `// circle: why` stands at the end of the line that closes it, or on the line above:
+//! that file's imports of the other one do not count then.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -71,7 +71,8 @@ pub fn identifiers(tokens: TokenStream) -> BTreeSet<String> {
     found
 }
 
-/// Paths that stand in the tokens of a macro call, with their lines. Names after a dot are fields and methods, and no paths.
+/// Paths that stand in the tokens of a macro call, with their lines. Names after a dot are fields
+/// and methods, and no paths.
 pub(super) fn paths_in(tokens: TokenStream, found: &mut Vec<(Vec<String>, usize)>) {
     let mut path: Option<(Vec<String>, usize)> = None;
     let mut colons = 0;

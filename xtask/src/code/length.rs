@@ -1,4 +1,4 @@
-//! How long functions and files are.
+//! How long functions and files are, and how wide comments.
 
 use std::fs;
 use std::path::Path;
@@ -14,6 +14,9 @@ pub const MOST_LINES: usize = 100;
 
 /// A file of more bytes holds more than one idea.
 pub const MOST_BYTES: usize = 30_000;
+
+/// A line of a comment or of a page that is wider makes its reader scroll.
+pub const MOST_COLUMNS: usize = 100;
 
 /// Functions of more than [`MOST_LINES`] that give no reason: one line of text each.
 pub fn long_functions(root: &Path, folder: &str) -> Result<Vec<String>> {
@@ -42,6 +45,37 @@ pub fn large_files(root: &Path, folder: &str) -> Result<Vec<String>> {
         }
     }
     Ok(found)
+}
+
+/// Lines of comments that are wider than [`MOST_COLUMNS`], where they can be broken. Tables and
+/// examples of code are left out.
+pub fn wide_comments(root: &Path, folder: &str) -> Result<Vec<String>> {
+    let mut found = Vec::new();
+    for path in rust_files(root, &[folder])? {
+        let text = fs::read_to_string(&path)?;
+        let place = path.strip_prefix(root)?.display();
+        let mut fence: Option<&str> = None;
+        for (number, line) in text.lines().enumerate() {
+            let Some(comment) = line.trim_start().strip_prefix("//") else {
+                fence = None;
+                continue;
+            };
+            let comment = comment.trim_start_matches(['/', '!']).trim_start();
+            if let Some(language) = comment.strip_prefix("```") {
+                fence = if fence.is_none() { Some(language) } else { None };
+            }
+            let is_code = fence.is_some_and(|language| language != "text");
+            if !is_code && !comment.starts_with('|') && is_wide(line) {
+                found.push(format!("{place}:{}", number + 1));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a line is wider than [`MOST_COLUMNS`] and has a blank to break it at.
+pub fn is_wide(line: &str) -> bool {
+    line.chars().count() > MOST_COLUMNS && line.trim().trim_start_matches(['/', '!', '-', ' ']).contains(' ')
 }
 
 struct Reader<'text> {

@@ -1,5 +1,6 @@
-//! Source text, read well enough to be judged: files and modules ([`Crate`]), what imports what ([`circles`]), how long functions are ([`length`]), and
-//! what is public ([`public`]), and whether there is anything to test ([`tested`]).
+//! Source text, read well enough to be judged: files and modules ([`Crate`]), what imports what
+//! ([`circles`]), how long functions are ([`length`]), and what is public ([`public`]), and whether
+//! there is anything to test ([`tested`]).
 
 pub mod circles;
 mod file;

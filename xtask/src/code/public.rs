@@ -1,7 +1,8 @@
 //! What is public, and who uses it.
 //!
-//! A name that a library exports is used if it stands in the sources of another crate, or in tests, examples or benchmarks of any. A type that nobody
-//! names is used if the signature of something that is used has it. Names are compared as text: a method counts as used if anything of its name
+//! A name that a library exports is used if it stands in the sources of another crate, or in tests,
+//! examples or benchmarks of any. A type that nobody names is used if the signature of something
+//! that is used has it. Names are compared as text: a method counts as used if anything of its name
 //! is used anywhere, so the check finds less than there is, and nothing that is not.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,9 +14,10 @@ use anyhow::{Context, Result};
 use super::module::{Item, ModulePath};
 use super::tree::{Crate, Target};
 use super::{identifiers, rust_files};
-use crate::rooms::Graph;
+use crate::layers::Graph;
 
-/// Identifiers of every source file of the workspace and of the packages beside it, by path from the root.
+/// Identifiers of every source file of the workspace and of the packages beside it, by path from
+/// the root.
 pub struct Words(BTreeMap<String, BTreeSet<String>>);
 
 impl Words {

@@ -1,4 +1,5 @@
-//! A library says of itself that it has no unit tests, or no examples in its documentation, where it has none: each is a program that is built and linked to test nothing.
+//! A library says of itself that it has no unit tests, or no examples in its documentation, where
+//! it has none: each is a program that is built and linked to test nothing.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +9,8 @@ use toml::Table;
 
 use super::rust_files;
 
-/// `[lib] test = false` stands in the manifest of a library without `#[test]`, `doctest = false` in that of one without an example, and nowhere else.
+/// `[lib] test = false` stands in the manifest of a library without `#[test]`, `doctest = false` in
+/// that of one without an example, and nowhere else.
 pub fn says_what_is_tested(root: &Path, folder: &str) -> Result<()> {
     if !root.join(folder).join("src/lib.rs").exists() {
         return Ok(());

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 
 use super::file::SourceFile;
 use super::module::{self, Module, ModulePath};
-use crate::rooms::Graph;
+use crate::layers::Graph;
 
 /// A library or a program of a package.
 #[derive(Debug)]
@@ -108,7 +108,8 @@ impl Crate {
         Ok(())
     }
 
-    /// What `segments`, written in the module `from`, stands for; `None` if it is nothing of this crate.
+    /// What `segments`, written in the module `from`, stands for; `None` if it is nothing of this
+    /// crate.
     pub fn resolve(&self, from: &[String], segments: &[String]) -> Option<Target> {
         self.resolve_within(from, segments, 0)
     }
@@ -136,7 +137,8 @@ impl Crate {
         Some(Target::Module(at))
     }
 
-    /// A name in a module: its own, an imported one, or one of a module all of whose names are imported.
+    /// A name in a module: its own, an imported one, or one of a module all of whose names are
+    /// imported.
     fn look_up(&self, at: &[String], segments: &[String], depth: usize) -> Option<Target> {
         let module = self.modules.get(at)?;
         let Some((name, rest)) = segments.split_first() else {

@@ -14,7 +14,8 @@ const BESIDE: [&str; 3] = ["tests", "benches", "examples"];
 /// Parts of a `Cargo.toml` that change what is built.
 const BUILT: [&str; 4] = ["dependencies", "build-dependencies", "features", "target"];
 
-/// Files under `inputs` that differ between a commit and the checkout in more than comments and tests. `named` are inputs that count as they stand.
+/// Files under `inputs` that differ between a commit and the checkout in more than comments and
+/// tests. `named` are inputs that count as they stand.
 pub(super) fn since(root: &Path, commit: &str, inputs: &[String], named: &[String]) -> Result<Vec<String>> {
     git(root, &["cat-file", "-e", &format!("{commit}^{{commit}}")])
         .with_context(|| format!("commit {commit} is not in this clone: fetch its whole history"))?;

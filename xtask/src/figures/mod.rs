@@ -1,4 +1,5 @@
-//! The committed figures: which sources made each, and whether those are still the same (`xtask/figures.toml`).
+//! The committed figures: which sources made each, and whether those are still the same
+//! (`xtask/figures.toml`).
 
 mod change;
 mod source;
@@ -10,14 +11,15 @@ use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
 
 use crate::git::git;
-use crate::rooms::Graph;
+use crate::layers::Graph;
 
 /// Where the figures are listed.
 pub const LIST: &str = "xtask/figures.toml";
 
-/// Folders that figures are in, and what the names of figures end with; pages and pictures are written with them.
-const FOLDERS: [&str; 3] = ["docs/results", "docs/benchmarks", "docs/verification"];
-const FIGURES: [&str; 2] = [".json", ".csv"];
+/// Folders that figures are in, and what the names of figures end with; pages and pictures are
+/// written with them.
+const FOLDERS: [&str; 1] = ["docs"];
+const FIGURES: [&str; 4] = [".json", ".csv", ".png", ".svg"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -43,6 +45,8 @@ pub struct Figure {
     pub paths: Vec<String>,
     /// Why they are kept although the code has changed since.
     pub older: Option<String>,
+    /// What makes pictures again, for `bash`.
+    pub remake: Option<String>,
 }
 
 /// All figures. Each of the folders is listed, with the commit that it has itself, if it has one.
@@ -88,7 +92,8 @@ fn own_commit(file: &Path) -> Result<Option<String>> {
     Ok(value["commit"].as_str().map(str::to_owned))
 }
 
-/// Fails where code that makes a figure has changed since, and nothing says so; and where something says so without need.
+/// Fails where code that makes a figure has changed since, and nothing says so; and where something
+/// says so without need.
 pub fn check(root: &Path, figures: &[Figure]) -> Result<()> {
     if git(root, &["rev-parse", "--is-shallow-repository"])? == "true" {
         eprintln!("note: this clone has no history; whether figures are older than the code is not known");
@@ -139,13 +144,46 @@ fn noted(text: &str, file: &str, commit: &str) -> String {
     lines
 }
 
-/// The table of all figures for a page.
+/// Makes pictures again: all that have a way to, or those whose files have `name` in them. Nothing
+/// else may be uncommitted, so that the list can name the commit.
+pub fn remake(root: &Path, name: &str) -> Result<()> {
+    let figures = read(root)?;
+    let has_it = |figure: &&Figure| figure.files.iter().any(|file| file.contains(name));
+    let commit = git(root, &["rev-parse", "--short=7", "HEAD"])?;
+    for figure in figures.iter().filter(has_it) {
+        let (Some(remake), Some(first)) = (&figure.remake, figure.files.first()) else {
+            continue;
+        };
+        let pictures = figure.files.iter().map(|file| format!(":!{file}"));
+        let pictures: Vec<String> = pictures.chain([format!(":!{LIST}")]).collect();
+        let mut status = vec!["status", "--porcelain", "--", "."];
+        status.extend(pictures.iter().map(String::as_str));
+        ensure!(
+            git(root, &status)?.is_empty(),
+            "something is not committed: nobody could make {first} again"
+        );
+        eprintln!("make: {}", figure.files.join(", "));
+        let done = std::process::Command::new("bash")
+            .args(["-euo", "pipefail", "-c", remake])
+            .current_dir(root)
+            .status()
+            .context("starting bash")?;
+        ensure!(done.success(), "{first}: `{}` failed, {done}", remake.trim());
+        are_made_anew(root, first, &commit)?;
+    }
+    Ok(())
+}
+
+/// The table of all figures for a page in `docs/results`.
 pub fn table(figures: &[Figure]) -> String {
     let mut table = "\n| figures | made by | of commit | since then |\n|---|---|---|---|\n".to_owned();
     for figure in figures {
         let links = figure.files.iter().map(|file| {
-            let file = file.strip_prefix("docs/").unwrap_or(file);
-            format!("[{}]({file})", file.rsplit('/').next().unwrap_or(file))
+            let beside = file.strip_prefix("docs/results/").map(str::to_owned);
+            let in_docs = file.strip_prefix("docs/").map(|file| format!("../{file}"));
+            let file = beside.or(in_docs).unwrap_or_else(|| format!("../../{file}"));
+            let name = file.rsplit('/').next().unwrap_or_default();
+            format!("[{name}]({file})")
         });
         let since = figure.older.as_deref();
         table += &format!(
@@ -224,6 +262,7 @@ mod tests {
                 packages: Vec::new(),
                 paths: vec!["src".into()],
                 older: older.map(str::to_owned),
+                remake: None,
             };
             check(root, &[figure]).map_err(|error| error.to_string())
         };

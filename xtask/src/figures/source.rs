@@ -2,7 +2,8 @@
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
-/// The tokens of a source, comments and all that is compiled for tests alone left out; none where it can't be read.
+/// The tokens of a source, comments and all that is compiled for tests alone left out; none where
+/// it can't be read.
 pub(super) fn without_comments_and_tests(text: &str) -> Option<String> {
     let tokens: TokenStream = text.parse().ok()?;
     Some(stripped(tokens).to_string())

@@ -1,9 +1,10 @@
-//! What can be typed.
+//! Command-line arguments.
 
 #[cfg(test)]
 mod conflicts;
 mod dataset;
 mod design;
+mod fast;
 mod stream;
 mod view;
 mod wire;
@@ -12,6 +13,7 @@ use std::path::PathBuf;
 
 pub(crate) use dataset::Dataset;
 pub(crate) use design::Design;
+pub(crate) use fast::{FastImperfection, FastTrain};
 pub(crate) use stream::{Ports, RowFormat, Stream};
 pub(crate) use view::View;
 pub(crate) use wire::Wire;
@@ -21,22 +23,23 @@ use twintac_gel::mesh::LengthUnit;
 
 /// Barometric touch sensors and their digital twin.
 ///
-/// `demo` needs neither hardware nor data; `reproduce` does the same on recordings of a real sensor. Both run the stages below, which are
-/// commands of their own: record or import, mesh, simulate, align, train, evaluate, report.
+/// `demo` needs neither hardware nor data. `reproduce` does the same with recordings of a real
+/// sensor. Both run these stages, which are also commands of their own: record or import, mesh,
+/// simulate, align, train, evaluate, report.
 #[derive(Debug, Parser)]
 #[command(name = "twintac", version)]
 pub(crate) struct Arguments {
-    /// What to do.
+    /// The command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Threads to compute with; the results do not depend on it [default: one per core].
+    /// Number of threads; the results do not depend on it [default: one per core].
     #[arg(long, global = true, value_name = "N")]
     pub(crate) threads: Option<usize>,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Run every stage on the emulated bench: needs no hardware and no data, and takes minutes.
+    /// Run every stage on the emulated bench; needs no hardware and no data, and takes minutes.
     Demo(Demo),
     /// Run every stage on recordings of a real sensor.
     Reproduce(Reproduce),
@@ -47,25 +50,26 @@ pub(crate) enum Command {
     Mesh(Mesh),
     /// Press the simulated gel along a protocol.
     Simulate(Simulate),
-    /// Press the simulated gel by hand, on a page; beside a sensor, if there is one.
+    /// Press the simulated gel interactively on a web page, beside a sensor if one is connected.
     View(View),
-    /// Make many simulated presses to learn from, in shards for as many machines as there are.
+    /// Simulate many presses as training data, in shards on any number of machines.
     Dataset(Dataset),
-    /// Compare sensors that differ in numbers of their description before one is cast.
+    /// Compare designs of a sensor, which differ in numbers of its description, before one is cast.
     Design(Design),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
     /// Measure a sensor's properties in recorded presses: sensitivity, noise, hysteresis, and more.
     Characterize(Characterize),
-    /// List what a sensor may be plugged into, and what it sounds like.
+    /// List the ports that a sensor may be connected to, and what arrives there.
     Ports(Ports),
-    /// Show a sensor's frames live: on a dashboard, or as rows of text.
+    /// Show a sensor's frames live, on a dashboard or as rows of text.
     Stream(Stream),
-    /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
+    /// Press a sensor along a protocol and record it, on a bench with a robot or on the emulated
+    /// bench.
     Record(Record),
-    /// Write the frames of logs as Parquet tables, or recordings for LeRobot; recover logs that were cut.
+    /// Export logs as Parquet tables, ROS 2 bags or LeRobot data sets; recover logs that were cut.
     Export(Export),
-    /// Read recordings of a real sensor.
+    /// Import recordings of a real sensor.
     Import(Import),
     /// Pair recorded presses with simulated ones.
     Align(Align),
@@ -75,13 +79,13 @@ pub(crate) enum Command {
     Evaluate(Evaluate),
     /// Adapt a trained twin to another sensor of the same kind with a few presses.
     Adapt(Adapt),
-    /// Judge twins of a run's recordings for several seeds and ways to hold presses out.
+    /// Cross-validate twins of a run's recordings, for several seeds and ways to hold presses out.
     CrossValidate(CrossValidate),
-    /// Print what a sensor would read along a path or a protocol, by its trained twin.
+    /// Predict a sensor's readings along a path or a protocol by its trained twin.
     Predict(Predict),
-    /// Find where and how deep a sensor is touched from its readings, by its trained twin.
+    /// Estimate where and how deep a sensor is touched, from its readings by its trained twin.
     Locate(Locate),
-    /// The twin without finite elements: touch at the rate of reinforcement learning.
+    /// Train the surrogate of a gel (without finite elements), and estimate sensor variation.
     #[command(subcommand)]
     Fast(FastCommand),
     /// Write the report of a run.
@@ -90,69 +94,11 @@ pub(crate) enum Command {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum FastCommand {
-    /// Train a fast twin from a sensor's description alone.
+    /// Train a surrogate of the gel from a sensor's description alone.
     Train(FastTrain),
-    /// Find how imperfect sensors are, from a trained model and recordings: a file for many simulated sensors.
+    /// Estimate sensor variation from a trained model and recordings: a file for many simulated
+    /// sensors.
     Imperfection(FastImperfection),
-}
-
-/// The gel is pressed at random with finite elements, and networks learn from that. Then they are judged on presses that taught nothing. Presses that are solved are
-/// kept: a killed run goes on.
-#[derive(Args, Debug)]
-pub(crate) struct FastTrain {
-    /// Sensor description (TOML).
-    #[arg(long, value_name = "FILE")]
-    pub(crate) sensor: PathBuf,
-    /// Folder of the solved presses, the fast twin and its judgement.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-    /// Presses to learn from [default: 2000].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(20..))]
-    pub(crate) lessons: Option<u64>,
-    /// Presses of shapes that are not taught, to be judged on [default: 100].
-    #[arg(long, value_name = "N")]
-    pub(crate) exams: Option<u64>,
-    /// Presses of such shapes that slide and tilt, to be judged on [default: 40].
-    #[arg(long, value_name = "N")]
-    pub(crate) slides: Option<u64>,
-    /// Press with the sensor's own indenters alone, upright and near its ports: for the twin of a bench (`fast_gel` in a run's settings). There are no slides then.
-    #[arg(long, conflicts_with = "slides")]
-    pub(crate) own_indenters: bool,
-    /// Steps of the training [default: 80000].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) steps: Option<u64>,
-    /// Seed of all random choices.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// Print the judgement as JSON.
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-/// Each width has a comment: where it comes from, real or emulated, how sure it is, and on how many values it rests. What neither model nor recordings tell is left out, with
-/// the reason. Without --out the file is printed.
-#[derive(Args, Debug)]
-#[command(group = ArgGroup::new("source").required(true).multiple(true))]
-pub(crate) struct FastImperfection {
-    /// Folder of a trained model: a run's `model`. It tells how gains and port laws of taxels differ, contact heights, place and turn.
-    #[arg(long, value_name = "DIR", group = "source")]
-    pub(crate) model: Option<PathBuf>,
-    /// Recordings of the sensor: presses.parquet files, MCAP logs, CSV files, or patterns. They tell noise, steps, zeros, drift with temperature,
-    /// hysteresis, rate, jitter, and taxels that fail.
-    #[arg(long, value_name = "FILES", num_args = 1.., group = "source")]
-    pub(crate) recordings: Vec<String>,
-    /// How to read CSV recordings (TOML) [default: the file that --sensor names].
-    #[arg(long, value_name = "FILE", requires = "recordings")]
-    pub(crate) import: Option<PathBuf>,
-    /// What the recordings call the sensor, where that is another name.
-    #[arg(long, value_name = "NAME", requires = "recordings")]
-    pub(crate) recorded_as: Option<String>,
-    /// Sensor description (TOML) [default: the model's].
-    #[arg(long, value_name = "FILE", required_unless_present = "model")]
-    pub(crate) sensor: Option<PathBuf>,
-    /// File to write (TOML, a table [imperfection]).
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
@@ -165,13 +111,15 @@ pub(crate) struct Demo {
     pub(crate) seed: u64,
 }
 
-/// What every run is started with.
+/// Options of every new run.
 #[derive(Args, Debug)]
 pub(crate) struct Start {
-    /// Settings (TOML) that differ from the defaults: any of those in a run's run.json, in tables like [simulate] and [train].
+    /// Settings (TOML) that differ from the defaults: any field of a run's run.json, in tables such
+    /// as [simulate] and [train].
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
-    /// How zeros move with temperature (TOML), as `twintac characterize` found it: recordings with temperatures are compensated, and the model keeps it.
+    /// Temperature coefficients of the zeros (TOML), made by `twintac characterize`: recordings
+    /// with temperatures are compensated, and the model keeps the coefficients.
     #[arg(long, value_name = "FILE")]
     pub(crate) temperature: Option<PathBuf>,
     /// Seed of all random choices.
@@ -179,13 +127,13 @@ pub(crate) struct Start {
     pub(crate) seed: u64,
 }
 
-/// Recordings and how to read them.
+/// Recordings, and how to read them.
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: some hours.
+    /// Repeat the experiments of the TwinTac paper on the emulated bench instead; takes hours.
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) paper: bool,
-    /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
+    /// With --paper: few presses of a simple bench, to check that everything runs; takes minutes.
     #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) quick: bool,
     /// Sensor description (TOML).
@@ -194,7 +142,8 @@ pub(crate) struct Reproduce {
     /// Recordings: CSV files or patterns like 'data/*.csv'.
     #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "paper")]
     pub(crate) recordings: Vec<String>,
-    /// How to read the recordings (TOML) [default: the file that the sensor description names].
+    /// Import description of the recordings (TOML) [default: the file that the sensor description
+    /// names].
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
     /// Folder of the run [default: runs/<sensor>, or runs/paper].
@@ -217,7 +166,7 @@ pub(crate) enum SensorCommand {
 pub(crate) struct SensorShow {
     /// Sensor description (TOML).
     pub(crate) file: PathBuf,
-    /// Draw it, top and section, into this PNG or SVG file.
+    /// Draw the sensor, top view and section, into this PNG or SVG file.
     #[arg(long, value_name = "FILE")]
     pub(crate) draw: Option<PathBuf>,
 }
@@ -235,13 +184,13 @@ pub(crate) struct Mesh {
     /// Edge length, mm [default: a sixth of the gel's height].
     #[arg(long, value_name = "MM", conflicts_with_all = ["nodes", "check"])]
     pub(crate) edge_mm: Option<f64>,
-    /// Number of nodes, met within a tenth.
+    /// Number of nodes, within 10 %.
     #[arg(long, value_name = "N", conflicts_with = "check")]
     pub(crate) nodes: Option<usize>,
     /// Read a Gmsh file instead and print its quality.
     #[arg(long, value_name = "FILE")]
     pub(crate) check: Option<PathBuf>,
-    /// Unit of the lengths in that file: mm, cm, m or inch.
+    /// Unit of length in that file: mm, cm, m or inch.
     #[arg(long, value_name = "UNIT", default_value = "mm", requires = "check")]
     pub(crate) unit: LengthUnit,
     /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
@@ -251,7 +200,7 @@ pub(crate) struct Mesh {
 
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
-    /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
+    /// Folder of a run: simulate the locations of its presses, and fit the unknowns of its bench.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out", "path", "settings", "vtk", "seed"])]
     pub(crate) run: Option<PathBuf>,
     /// Sensor description (TOML).
@@ -260,57 +209,60 @@ pub(crate) struct Simulate {
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE", requires = "sensor", requires = "out")]
     pub(crate) protocol: Option<PathBuf>,
-    /// Folder to write one table over depth per press to.
+    /// Folder to write to: one table over depth for each press.
     #[arg(long, value_name = "DIR", requires = "protocol")]
     pub(crate) out: Option<PathBuf>,
-    /// Path of one indenter (TOML): prints force and pressures along it.
+    /// Path of one indenter (TOML); prints force and pressures along it.
     #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with_all = ["protocol", "out", "vtk", "seed"])]
     pub(crate) path: Option<PathBuf>,
-    /// Print what the computing time of a path's frames is spent on.
+    /// Print how the computing time of a path's frames is divided.
     #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) profile: bool,
     /// Print the results of a path as JSON.
     #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) json: bool,
-    /// Answer each frame of a path within so many milliseconds of wall time, settled or not; two more columns say how far from balanced the forces are.
+    /// Limit the wall time of each frame of a path, ms, converged or not; two more columns show
+    /// convergence and residual.
     #[arg(long, value_name = "MS", requires = "path", conflicts_with_all = ["run", "protocol"], value_parser = clap::value_parser!(u32).range(1..=60_000))]
     pub(crate) deadline_ms: Option<u32>,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE", requires = "sensor")]
     pub(crate) settings: Option<PathBuf>,
-    /// Also write the pressed gel of every frame for ParaView.
+    /// Also write the deformed gel of every frame for ParaView.
     #[arg(long, requires = "protocol")]
     pub(crate) vtk: bool,
-    /// Seed of the protocol's random places.
+    /// Seed of the protocol's random locations.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
-    /// Sensor description (TOML); its material is where the fit starts.
+    /// Sensor description (TOML); the fit starts from its material.
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: PathBuf,
     /// Measured presses (CSV): columns time_s, depth_mm, and force_n or <taxel>_kpa.
     #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "curves", requires = "indenter")]
     pub(crate) csv: Vec<String>,
-    /// Name of the sensor's indenter that the CSV files were measured with.
+    /// Name of the sensor's indenter in the CSV files.
     #[arg(long, value_name = "NAME")]
     pub(crate) indenter: Option<String>,
-    /// Place of the press along the gel's x axis, mm.
+    /// Location of the press along the gel's x axis, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) x_mm: f64,
-    /// Place of the press along the gel's y axis, mm.
+    /// Location of the press along the gel's y axis, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) y_mm: f64,
-    /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
+    /// Curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file,
+    /// import, presses, signals, taxels.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter", "x_mm", "y_mm"])]
     pub(crate) curves: Option<PathBuf>,
-    /// Free parameters: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
-    /// bulk_modulus_kpa), poissons_ratio, friction, depth_offset_mm, force_scale, force_offset_n.
+    /// Free parameters: constants of the material by their names in files (shear_modulus_kpa,
+    /// terms[0].alpha, prony[0].weight, bulk_modulus_kpa), poissons_ratio, friction,
+    /// depth_offset_mm, force_scale, force_offset_n.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
     pub(crate) free: Vec<String>,
-    /// About how many frames of each curve to simulate.
+    /// Approximate number of simulated frames of each curve.
     #[arg(long, value_name = "N", default_value_t = 40)]
     pub(crate) frames: usize,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].
@@ -329,10 +281,12 @@ pub(crate) struct Characterize {
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: PathBuf,
-    /// Recordings: Parquet files of presses or frames, MCAP logs, also cut ones (`.mcap.partial`), logs of others, or patterns of them.
+    /// Recordings: Parquet files of presses or frames, MCAP logs, also cut ones (`.mcap.partial`),
+    /// logs of other formats, or patterns.
     #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
     pub(crate) recordings: Vec<String>,
-    /// What the columns of logs of others mean (TOML); with `presses = { split = "none" }` they have readings alone.
+    /// Import description of logs of other formats (TOML); with `presses = { split = "none" }` they
+    /// have readings alone.
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
     /// Folder to write characterization.json, report.html, datasheet.html and temperature.toml to.
@@ -343,33 +297,36 @@ pub(crate) struct Characterize {
     pub(crate) json: bool,
 }
 
-/// A run that was stopped or killed goes on with the first press that is not done. The robot is stopped by Ctrl-C, by any limit, and by
-/// silence of any device.
+/// A run that was stopped or killed continues with the first press that is not done. The robot is
+/// stopped by Ctrl-C, by any limit, and when a device stops sending.
 #[derive(Args, Debug)]
 pub(crate) struct Record {
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) protocol: PathBuf,
-    /// Record on the emulated bench. REALITY has its physics and imperfections: a TOML file, or one that is built in, `default`, `harder` or `thicker`
-    /// [default: default].
+    /// Record on the emulated bench. REALITY is its emulator configuration, with physics and sensor
+    /// variation: a TOML file, or the built-in `default`, `harder` or `thicker` [default: default].
     #[arg(long, value_name = "REALITY", num_args = 0..=1)]
     pub(crate) lab: Option<Option<PathBuf>>,
-    /// How presses are carried out (TOML); without --lab also where the devices are [default: rigs/lab.toml].
+    /// Hardware configuration (TOML): how presses are carried out and, without --lab, the addresses
+    /// of the devices [default: rigs/lab.toml].
     #[arg(long, value_name = "FILE", required_unless_present_any = ["lab", "dry_run"])]
     pub(crate) bench: Option<PathBuf>,
     /// Sensor description (TOML) [default: PhysTac].
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: Option<PathBuf>,
-    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
+    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the
+    /// value of the sensor description].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "lab")]
     pub(crate) scale: Option<u16>,
-    /// Altitude of the bench, m, whose free air the scale is checked against [default: anything up to 2000].
+    /// Altitude of the bench, m; the scale is checked against the pressure of free air there
+    /// [default: anything up to 2000].
     #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
     pub(crate) altitude_m: Option<f32>,
     /// Folder of the run [default: runs/<protocol>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Print and draw what would be done, and how long it would take; move nothing.
+    /// Print and draw what would be done, and how long it would take, without moving the robot.
     #[arg(long)]
     pub(crate) dry_run: bool,
     /// Faults of the emulated bench (TOML), in tables [[faults]].
@@ -387,41 +344,47 @@ pub(crate) struct Record {
 
 #[derive(Args, Debug)]
 pub(crate) struct Export {
-    /// Logs of `stream` or `record`: MCAP files, also cut ones (`.mcap.partial`), or patterns like 'runs/touch/*.mcap'. With --lerobot also
-    /// presses.parquet files.
+    /// Logs of `stream` or `record`: MCAP files, also cut ones (`.mcap.partial`), or patterns such
+    /// as 'runs/touch/*.mcap'. With --lerobot also presses.parquet files.
     #[arg(value_name = "LOGS", num_args = 1.., required = true)]
     pub(crate) logs: Vec<String>,
     /// Folder of the tables [default: beside the logs].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Write each log as a bag of ROS 2 (MCAP) with standard messages alone into this folder: all pressures in Pa as one Float32MultiArray, FluidPressure and
-    /// Temperature of each taxel, WrenchStamped, PoseStamped.
+    /// Write each log into this folder as a ROS 2 bag (MCAP) with standard messages alone: all
+    /// pressures in Pa as one Float32MultiArray, FluidPressure and Temperature of each taxel,
+    /// WrenchStamped, PoseStamped.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "lerobot"])]
     pub(crate) ros: Option<PathBuf>,
-    /// Call a topic of --ros otherwise, such as tactile=/finger/touch: tactile [default: /tactile], pressure [default: /tactile/{taxel}/pressure], temperature
-    /// [default: /tactile/{taxel}/temperature], wrench [default: /wrench], pose [default: /robot/pose], events [default: /events].
+    /// Rename a topic of --ros, for example tactile=/finger/touch. Topics: tactile [default:
+    /// /tactile], pressure [default: /tactile/{taxel}/pressure], temperature [default:
+    /// /tactile/{taxel}/temperature], wrench [default: /wrench], pose [default: /robot/pose],
+    /// events [default: /events].
     #[arg(long, value_name = "TOPIC=NAME", requires = "ros", conflicts_with_all = ["out", "lerobot"], value_parser = topic_name)]
     pub(crate) topic: Vec<(String, String)>,
-    /// Write recorded presses, of presses.parquet files or of logs, as one data set of LeRobot (version 3.0) into this folder, which must not be there yet.
+    /// Write recorded presses, from presses.parquet files or logs, into this new folder as one
+    /// LeRobot data set (version 3.0).
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     pub(crate) lerobot: Option<PathBuf>,
-    /// Print what was written as JSON, a line for each log.
+    /// Print the results as JSON, one line for each log.
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Import {
-    /// Print a first description of the columns of a CSV file or a bag of ROS 2 (MCAP) instead, with a comment on each guess.
+    /// Print a first import description of a CSV file or a ROS 2 bag (MCAP) instead, with a comment
+    /// on each guess.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["sensor", "recordings", "import", "out", "settings"])]
     pub(crate) guess: Option<PathBuf>,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE", required_unless_present = "guess")]
     pub(crate) sensor: Option<PathBuf>,
-    /// Recordings: CSV files, bags of ROS 2 (MCAP), or patterns like 'data/*.csv'.
+    /// Recordings: CSV files, ROS 2 bags (MCAP), or patterns such as 'data/*.csv'.
     #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "guess")]
     pub(crate) recordings: Vec<String>,
-    /// How to read the recordings (TOML) [default: the file that the sensor description names].
+    /// Import description of the recordings (TOML) [default: the file that the sensor description
+    /// names].
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
     /// Folder of the run.
@@ -456,10 +419,10 @@ pub(crate) struct Evaluate {
     /// Recordings: CSV files, presses.parquet files, or patterns.
     #[arg(long, value_name = "FILES", num_args = 1..)]
     pub(crate) recordings: Vec<String>,
-    /// How to read CSV recordings (TOML).
+    /// Import description of CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
-    /// What the recordings call the model's sensor, where that is another name.
+    /// Name of the model's sensor in the recordings, if it differs.
     #[arg(long, value_name = "NAME", requires = "model")]
     pub(crate) recorded_as: Option<String>,
     /// Print the figures as JSON.
@@ -467,8 +430,10 @@ pub(crate) struct Evaluate {
     pub(crate) json: bool,
 }
 
-/// Gains, port law, memory, contact heights and stiffness are fitted at once, and pulled to what was learned: what few presses cannot tell
-/// stays. Presses are chosen by their poses: spread over files, then over taxels; chance decides among equals. The rest judge.
+/// Gains, static nonlinearity, relaxation, contact heights and stiffness are fitted together, with
+/// regularization towards the values of the original twin: what a few presses do not determine
+/// stays as it was. Presses are chosen by their poses: spread over files, then over taxels; equal
+/// ones are drawn at random. The other presses are for testing.
 #[derive(Args, Debug)]
 pub(crate) struct Adapt {
     /// Folder of the model to start from: a run's `model`.
@@ -480,28 +445,29 @@ pub(crate) struct Adapt {
     /// Description of the new sensor (TOML) [default: the model's].
     #[arg(long, value_name = "FILE", conflicts_with = "run")]
     pub(crate) sensor: Option<PathBuf>,
-    /// How to read CSV recordings (TOML) [default: the file that --sensor names].
+    /// Import description of CSV recordings (TOML) [default: the file that --sensor names].
     #[arg(long, value_name = "FILE", conflicts_with = "run")]
     pub(crate) import: Option<PathBuf>,
-    /// What the recordings call the new sensor, where that is another name.
+    /// Name of the new sensor in the recordings, if it differs.
     #[arg(long, value_name = "NAME", conflicts_with = "run")]
     pub(crate) recorded_as: Option<String>,
-    /// How many presses to adapt with.
+    /// Number of presses to adapt with.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "curve")]
     pub(crate) presses: u64,
-    /// Seed of what the choice of presses leaves to chance.
+    /// Seed of the random part of the choice of presses.
     #[arg(long, value_name = "S", default_value_t = 1, conflicts_with = "curve")]
     pub(crate) seed: u64,
-    /// Folder to write to: the adapted model is its `model`.
+    /// Folder to write to; the adapted model is `model` in it.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// With --run: errors over these numbers of presses.
+    /// With --run: numbers of presses at which errors are measured.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', requires = "run", conflicts_with_all = ["recordings", "sensor", "import"], value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) curve: Vec<u64>,
-    /// Folder of an evaluated run of the new sensor: its teaching presses adapt, its held-out presses judge, beside its own twin.
+    /// Folder of an evaluated run of the new sensor: its training presses are used to adapt, and
+    /// its test presses to evaluate, beside its own twin.
     #[arg(long, value_name = "DIR", requires = "curve", conflicts_with = "recordings")]
     pub(crate) run: Option<PathBuf>,
-    /// With --curve: how many times presses are chosen, with seeds from 1 on.
+    /// With --curve: number of seeds, from 1 on; each chooses other presses.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), requires = "curve", conflicts_with_all = ["recordings", "presses", "seed"])]
     pub(crate) seeds: u64,
     /// Print everything as JSON.
@@ -509,22 +475,24 @@ pub(crate) struct Adapt {
     pub(crate) json: bool,
 }
 
-/// Bench, twin and baselines are made anew each time, from what is not held out. Table and plot: mean and standard deviation over the seeds.
+/// Setup calibration, twin and baselines are computed anew each time, from the presses that are not
+/// held out. Table and plot show mean and standard deviation over the seeds.
 #[derive(Args, Debug)]
 pub(crate) struct CrossValidate {
-    /// Folder of a simulated run, such as `reproduce` leaves.
+    /// Folder of a simulated run, for example of `reproduce`.
     #[arg(long, value_name = "DIR")]
     pub(crate) run: PathBuf,
-    /// What is held out together: press, place, file, indenter, depth (the deepest fifth), region (an outermost third), taxel.
+    /// What is held out together: press, place (location), file, indenter, depth (the deepest
+    /// fifth), region (an outermost third), taxel.
     #[arg(long, value_name = "KINDS", value_delimiter = ',', default_value = "place")]
     pub(crate) held_out: Vec<twintac_run::HeldOut>,
     /// Number of seeds, from 1 on.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) seeds: u64,
-    /// Also leave out each step of the twin in turn, to see its gain.
+    /// Also run an ablation: leave out each step of the twin in turn.
     #[arg(long)]
     pub(crate) ablation: bool,
-    /// Also judge how sure the twins are: each is made again six times.
+    /// Also evaluate the prediction intervals; each twin is then refitted six times.
     #[arg(long)]
     pub(crate) intervals: bool,
     /// Print the figures as JSON.
@@ -532,26 +500,29 @@ pub(crate) struct CrossValidate {
     pub(crate) json: bool,
 }
 
-/// The gel is solved with finite elements, and the twin stepped frame by frame with what reaches its ports. All numbers are simulated.
+/// The gel is solved with finite elements, and the twin is stepped frame by frame with the
+/// pressures at its ports. All numbers are simulated.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("motion").required(true))]
 pub(crate) struct Predict {
     /// Folder of a model: a run's `model`.
     #[arg(long, value_name = "DIR")]
     pub(crate) model: PathBuf,
-    /// Path of one indenter (TOML): down, aside, tilted, and up again.
+    /// Path of one indenter (TOML): down, sideways, tilted, and up again.
     #[arg(long, value_name = "FILE", group = "motion")]
     pub(crate) path: Option<PathBuf>,
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE", group = "motion")]
     pub(crate) protocol: Option<PathBuf>,
-    /// An indenter that the sensor's description does not have, or has otherwise (TOML): name, shape, and friction if there is any.
+    /// Indenter (TOML) to add to the sensor's description, or to replace one of its name: name,
+    /// shape, and optionally friction.
     #[arg(long, value_name = "FILE")]
     pub(crate) indenter: Option<PathBuf>,
-    /// Seed of the protocol's random places.
+    /// Seed of the protocol's random locations.
     #[arg(long, default_value_t = 1, conflicts_with = "path")]
     pub(crate) seed: u64,
-    /// How much warmer than at their zero the chips are, K, where the model knows what that does [default: 0].
+    /// Temperature of the chips above that of their zero, K, for a model with temperature
+    /// coefficients [default: 0].
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = warmer_k)]
     pub(crate) warmer_k: Option<f64>,
     /// Draw depth, force and readings over time into this PNG or SVG file.
@@ -562,8 +533,9 @@ pub(crate) struct Predict {
     pub(crate) json: bool,
 }
 
-/// Frames are taken as they came. Nothing is told of the poses that the recording has: they judge. Known are the indenters, the contact heights of the twin's own
-/// files, and that a press begins untouched.
+/// Frames are processed in their recorded order. The recorded poses are not used for the estimate,
+/// only for its errors. Given are the indenters, the contact heights of the files that the twin was
+/// trained on, and that a press begins untouched.
 #[derive(Args, Debug)]
 pub(crate) struct Locate {
     /// Folder of a model: a run's `model`.
@@ -572,27 +544,28 @@ pub(crate) struct Locate {
     /// Recordings: CSV files, presses.parquet files, or patterns.
     #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
     pub(crate) recordings: Vec<String>,
-    /// How to read CSV recordings (TOML).
+    /// Import description of CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
-    /// What the recordings call the model's sensor, where that is another name.
+    /// Name of the model's sensor in the recordings, if it differs.
     #[arg(long, value_name = "NAME")]
     pub(crate) recorded_as: Option<String>,
-    /// Names of the sensor's indenters that may touch it [default: all].
+    /// Names of the sensor's indenters that can touch it [default: all].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) indenter: Vec<String>,
-    /// What the inverse assumes (TOML), where it differs from the defaults: noise_kpa, model_part, deepest_mm, and others.
+    /// Settings of the estimator (TOML) that differ from the defaults: noise_kpa, model_part,
+    /// deepest_mm, and others.
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     /// Print everything as JSON instead of comma-separated values.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print as JSON how far off places and depths are, without the frames.
+    /// Print the errors of locations and depths as JSON, without the frames.
     #[arg(long, conflicts_with = "json")]
     pub(crate) errors: bool,
 }
 
-/// What a topic holds, and its name.
+/// The content of a topic and its new name.
 fn topic_name(text: &str) -> Result<(String, String), String> {
     let pair = text
         .split_once('=')
@@ -600,7 +573,7 @@ fn topic_name(text: &str) -> Result<(String, String), String> {
     pair.ok_or_else(|| "expected what it holds and its name, such as tactile=/finger/touch".to_owned())
 }
 
-/// A difference of temperature, K.
+/// A temperature difference, K.
 fn warmer_k(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(warmer_k) if f64::abs(warmer_k) <= 200.0 => Ok(warmer_k),
@@ -608,7 +581,7 @@ fn warmer_k(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A file for a picture.
+/// The file of a picture.
 fn picture(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     match path.extension().and_then(|ending| ending.to_str()) {

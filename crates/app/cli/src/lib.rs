@@ -1,7 +1,25 @@
-//! The command line as a library: for the program `twintac`, and for the Python package, whose command it is too.
+//! The command line `twintac` as a library: for the program, and for the Python package, whose
+//! command is the same.
 //!
-//! Exit codes: 0 when all was done, 2 when something was wrong with what was asked for or given; the error says what, where, and what to do.
-//! 3 when a bench was stopped: what was recorded until then is kept.
+//! [`Program`] takes the arguments and the file of the program; [`Program::run`] runs one command
+//! and returns the exit code: 0 if everything was done; 2 if an argument or an input was wrong (the
+//! error says what, where, and what to do); 3 if a bench was stopped (what was recorded until then
+//! is kept).
+//!
+//! # How it works
+//!
+//! `arguments` declares the commands and options with clap, and checks combinations. `command` has
+//! a file for each command; it calls the crates that do the work (`crates/app/run`, `model`, `gel`,
+//! `dataset` and others) and prints their results: no figure is computed here. Data go to standard
+//! output; messages and progress go to standard error, as a bar on a terminal and as a line a
+//! minute elsewhere. Texts from files and devices are printed so that they cannot control the
+//! terminal.
+//!
+//! The help texts are the comments of the arguments. The documentation and snapshot tests
+//! (`tests/snapshots`) show them.
+//!
+//! The crate does not depend directly on the solver, and not on the libraries of file formats:
+//! results reach it through the other crates.
 
 mod arguments;
 mod command;
@@ -19,13 +37,13 @@ use crate::arguments::Arguments;
 pub use crate::program::Program;
 
 impl Program {
-    /// Does what the arguments ask for. Returns the exit code.
+    /// Runs the command of the arguments, and returns the exit code.
     #[must_use]
     pub fn run(&self) -> u8 {
         let arguments = match Arguments::try_parse_from(&self.arguments) {
             Ok(arguments) => arguments,
             Err(asked) => {
-                let _ = asked.print(); // of help and version as well
+                let _ = asked.print(); // also for help and version
                 return if asked.use_stderr() { 2 } else { 0 };
             }
         };
@@ -39,7 +57,8 @@ impl Program {
     }
 }
 
-/// An error and what caused it. Some errors quote their cause and name it as well: it is said once.
+/// An error and its causes. Some errors quote their cause and also have it as source: it is printed
+/// once.
 fn said(error: &anyhow::Error) -> String {
     let mut said = String::new();
     for cause in error.chain().map(ToString::to_string) {

@@ -1,4 +1,4 @@
-//! TwinTac: barometric touch sensors and their digital twin, from the command line.
+//! The program `twintac`. The library of this package has the command line.
 
 use std::process::ExitCode;
 

@@ -1,11 +1,11 @@
-//! Data on standard output; what is for people goes to standard error.
+//! Output of data to standard output. Messages for people go to standard error.
 
 use std::io::{ErrorKind, Write};
 
 use anyhow::{Result, anyhow};
 use twintac_text::visible;
 
-/// A figure in %, in a column of so many characters and two decimals: "none" over nothing.
+/// A figure in % with two decimals, right-aligned in a column; `none` without a value.
 pub(crate) fn percent(value: Option<f64>) -> String {
     match value {
         Some(value) => format!("{value:6.2} %"),
@@ -13,7 +13,8 @@ pub(crate) fn percent(value: Option<f64>) -> String {
     }
 }
 
-/// Prints a line of data to standard output; a closed pipe is no error. What would steer a terminal is shown instead.
+/// Prints a line of data to standard output; a closed pipe is no error. Characters that control a
+/// terminal are shown instead of sent.
 pub(crate) fn print(text: &str) -> Result<()> {
     match writeln!(std::io::stdout(), "{}", visible(text)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
@@ -21,7 +22,8 @@ pub(crate) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Prints rows of comma-separated values, the head first. Texts with commas, quotes or line breaks are quoted.
+/// Prints rows of comma-separated values, the header first. Texts with commas, quotes or line
+/// breaks are quoted.
 pub(crate) fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     print(csv(rows)?.trim_end_matches('\n'))
 }

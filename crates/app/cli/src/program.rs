@@ -1,4 +1,4 @@
-//! The program that commands are part of.
+//! The running program.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -9,17 +9,17 @@ use twintac_work::{Caller, sha256_of_file};
 
 use crate::progress::Bars;
 
-/// The program that commands are part of, and what it was started with.
+/// The running program, and its arguments.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// The file that tells one build from another.
+    /// The file whose SHA-256 identifies the build.
     pub file: PathBuf,
-    /// Its name, and what was typed behind it.
+    /// Its name, and the arguments after it.
     pub arguments: Vec<OsString>,
 }
 
 impl Program {
-    /// The program as runs know it.
+    /// The program in the form that runs need.
     pub(crate) fn caller(&self) -> Result<Caller> {
         let words: Vec<_> = self.arguments.iter().map(|word| word.to_string_lossy()).collect();
         Ok(Caller {

@@ -1,4 +1,5 @@
-//! Progress on standard error: a bar with an estimate on a terminal, and elsewhere a line a minute, and what must be known.
+//! Progress on standard error: a bar with an estimate on a terminal, and a line a minute elsewhere;
+//! and notes.
 
 use std::fmt;
 use std::io::{IsTerminal, Write};
@@ -10,18 +11,18 @@ use twintac_store::Outcome;
 use twintac_text::visible;
 use twintac_work::Progress;
 
-/// Between two lines where standard error is no terminal.
+/// Interval of lines if standard error is not a terminal.
 const QUIET: Duration = Duration::from_secs(60);
 
-/// One piece of work at a time, and lines above its bar.
+/// The piece of work in progress. Notes appear above its bar.
 #[derive(Debug, Default)]
 pub(crate) struct Bars(Mutex<Option<Shown>>);
 
-/// A piece of work that is shown.
+/// A piece of work that is displayed.
 #[derive(Debug)]
 struct Shown {
     bar: ProgressBar,
-    /// When it was last told in a line; none on a terminal.
+    /// When the last line was printed; `None` on a terminal.
     told: Option<Instant>,
 }
 
@@ -33,7 +34,7 @@ impl Bars {
 }
 
 impl Shown {
-    /// Tells in a line how far the work is, if that is a while ago.
+    /// Prints a line about the progress if the last one is old enough.
     fn tell(&mut self) {
         if self.told.is_none_or(|told| told.elapsed() < QUIET) {
             return;
@@ -71,7 +72,7 @@ impl Progress for Bars {
         shown.iter().for_each(|shown| shown.bar.finish_and_clear());
     }
 
-    /// Only on a terminal.
+    /// Printed only on a terminal.
     fn stage(&self, name: &str, outcome: Outcome) {
         let word = match outcome {
             Outcome::Ran => "done",
@@ -91,7 +92,7 @@ impl Progress for Bars {
     }
 }
 
-/// A bar draws nothing where standard error is not a terminal.
+/// A progress bar. It draws nothing if standard error is not a terminal.
 fn bar(work: &str, n_steps: usize) -> ProgressBar {
     let template = "{prefix:>10} [{bar:30}] {pos}/{len} {msg} {elapsed}, {left} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -108,7 +109,7 @@ fn bar(work: &str, n_steps: usize) -> ProgressBar {
     bar
 }
 
-/// How far a piece of work is, and how things stand.
+/// The progress of a piece of work as a line.
 fn line(bar: &ProgressBar) -> String {
     let minutes = |time: Duration| time.as_secs().div_ceil(60);
     let (done, all) = (bar.position(), bar.length().unwrap_or(0));
@@ -126,12 +127,12 @@ fn line(bar: &ProgressBar) -> String {
     format!("{work}: {done} of {all}{state} after {after} min{left}")
 }
 
-/// What is left to do, if each step takes as long as those before did on average.
+/// The remaining time, if each step takes the average time of the finished ones.
 fn left(elapsed: Duration, done: u64, all: u64) -> Option<Duration> {
     (done > 0).then(|| elapsed.mul_f64(all.saturating_sub(done) as f64 / done as f64))
 }
 
-/// A line on standard error, wherever that goes.
+/// Prints a line on standard error.
 pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(line));
 }
@@ -148,7 +149,7 @@ mod tests {
         };
         shown.bar.inc(70);
         let line = line(&shown.bar);
-        // Steps that came all at once, or long ago, change nothing about it.
+        // It does not depend on when the finished steps were done.
         assert_eq!(line, "recording: 70 of 280 after 3 min, about 8 min left");
         let begun = bar("fitting", 30);
         assert_eq!(super::line(&begun), "fitting: 0 of 30 after 0 min");

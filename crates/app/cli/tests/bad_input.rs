@@ -21,7 +21,7 @@ fn twintac(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Exit code 2, nothing on standard output, one error that holds all the words.
+/// Checks for exit code 2, empty standard output, and one error that contains all the words.
 fn refused(output: &Output, words: &[&str]) {
     let text = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{text}");
@@ -76,7 +76,7 @@ fn a_taxel_outside_the_gel() {
     );
 }
 
-/// A recording of three presses of the strip, with its description, in a folder of its own.
+/// Imports a recording of three presses of the strip, after a change, in a folder of its own.
 fn recording(folder: &Path, change: impl Fn(usize, &mut Vec<String>)) -> Output {
     let mut csv = String::new();
     let mut time_s = 0.0;
@@ -333,7 +333,7 @@ fn characterize(sensor: &str, recordings: &[&Path], out: &Path) -> Output {
     output
 }
 
-/// A frame of the log below, so many ms after its start.
+/// A frame of the log below, this many ms after its start.
 fn frame(at_ms: u64) -> Message {
     let taxel = TaxelReading {
         state: TaxelState::Good,
@@ -351,7 +351,7 @@ fn frame(at_ms: u64) -> Message {
     }
 }
 
-/// Two seconds of PhysTac at rest, with these events, so many ms after its start.
+/// A log of two seconds of PhysTac at rest, with these events, each this many ms after its start.
 fn log(path: &Path, events: &[(u64, Event)]) {
     let description = Description {
         sensor: "phystac".to_owned(),
@@ -415,7 +415,7 @@ fn nothing_to_characterize() {
         &characterize(phystac, &[&csv], &out),
         &[
             "press.csv",
-            "no Parquet file and no MCAP log",
+            "neither a Parquet file nor an MCAP log",
             "`--import`",
             "`twintac import --guess`",
         ],
@@ -430,7 +430,7 @@ fn nothing_to_characterize() {
         &characterize("sensors/strip4-gel-d.toml", &[&whole], &out),
         &["sensor `phystac`", "`strip4-gel-d`"],
     );
-    // Frames alone tell something.
+    // Frames without presses can be characterized.
     log(&touch, &[]);
     let output = characterize(phystac, &[&touch], &out);
     let said = String::from_utf8_lossy(&output.stdout);
@@ -462,7 +462,7 @@ fn recordings_that_do_not_belong_together() {
         &characterize("sensors/strip4-gel-d.toml", &[&strip, &touch], &out),
         &[
             "presses.parquet",
-            "sensor `strip4-gel-d`, those before it `phystac`",
+            "sensor `strip4-gel-d`, the previous ones have `phystac`",
         ],
     );
 }
@@ -489,7 +489,7 @@ fn a_press_in_which_the_bench_stopped_is_left_out_and_named() {
     let (presses, said) = n_presses(&[&log_file]);
     assert_eq!(presses, 1);
     assert!(
-        said.contains("the bench stopped at 1.800 s: the operator stopped it"),
+        said.contains("the test setup stopped at 1.800 s: the operator stopped it"),
         "{said}"
     );
     assert!(said.contains("press `two` was not finished"), "{said}");
@@ -497,7 +497,7 @@ fn a_press_in_which_the_bench_stopped_is_left_out_and_named() {
     assert_eq!(n_presses(&[&partial]).0, 1);
     let (presses, said) = n_presses(&[&log_file, &partial]);
     assert_eq!(presses, 1);
-    assert!(said.contains("touch.mcap.partial is there whole"), "{said}");
+    assert!(said.contains("touch.mcap.partial has a complete copy"), "{said}");
 }
 
 #[test]
@@ -543,7 +543,7 @@ fn places_that_cannot_be_found() {
 fn a_stream_that_cannot_be() {
     let folder = tempfile::tempdir().unwrap();
     let stream = |more: &[&str]| twintac(&[&["stream", "--lab"], more].concat());
-    // A sensor that does not say how it is wired.
+    // A sensor whose description does not say how it is wired.
     let unwired = folder.path().join("unwired.toml");
     let described = std::fs::read_to_string(root().join("sensors/strip4-gel-a.toml")).unwrap();
     let is_wiring = |line: &&str| line.starts_with("channel = ") || line.starts_with("chip = ");
@@ -553,12 +553,12 @@ fn a_stream_that_cannot_be() {
         &stream(&["--sensor", text(&unwired), "--format", "csv"]),
         &["strip4-gel-a", "does not say how its taxels are wired"],
     );
-    // A line that is described wrongly, or of another sensor, or comes over nothing.
+    // A line with a wrong description, with one of another sensor, or without a source.
     let line = folder.path().join("line.toml");
     for (described, words) in [
         (
             "form = \"text\"",
-            ["line.toml", "`fields` are what this form is read by"],
+            ["line.toml", "`fields` are required for this form"],
         ),
         (
             "form = \"text\"\nfields = [\"pressure * 3\"]",
@@ -697,7 +697,7 @@ fn designs_that_cannot_be() {
         &["noise"],
     );
     refused(&design(&["--vary", "gel.height_mm=-9..-4"]), &["size_mm[2]"]);
-    // The fingertip is no block.
+    // The fingertip's gel is no block.
     let tip = root().join("sensors/phystac-tip.toml");
     refused(
         &design(&[&["--sensor", text(&tip)], &height[..]].concat()),

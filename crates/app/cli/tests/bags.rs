@@ -1,4 +1,4 @@
-//! Bags of ROS 2 from the command line: imported, exported, refused; and logs of a stream.
+//! ROS 2 bags from the command line: imported, exported, refused; and logs of a stream.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -27,7 +27,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Exit code 2, nothing on standard output, one error that holds all the words.
+/// Checks for exit code 2, empty standard output, and one error that contains all the words.
 fn refused(output: &Output, words: &[&str]) {
     let text = said(output);
     assert_eq!(output.status.code(), Some(2), "{text}");
@@ -42,7 +42,7 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// What the bag below means.
+/// The import description of the bag below.
 const BENCH: &str = r#"
 sensor = "phystac"
 provenance = "emulated"
@@ -64,7 +64,7 @@ fn description() -> String {
     BENCH.replace("TAXELS", &taxels.join(", "))
 }
 
-/// A log of two presses, 2 mm deep, of 3 N and of 10 kPa on every taxel, for each mm.
+/// A log of two presses, 2 mm deep, with 3 N and 10 kPa on every taxel for each mm.
 fn log(path: &Path) {
     let about = Description {
         sensor: "phystac".to_owned(),
@@ -116,7 +116,7 @@ fn log(path: &Path) {
     fs::write(path, writer.finish().unwrap()).unwrap();
 }
 
-/// A folder with a log, the bag that `export --ros` makes of it, and what the bag means.
+/// A folder with a log, the bag that `export --ros` makes of it, and its import description.
 struct Bench {
     folder: tempfile::TempDir,
 }
@@ -160,7 +160,7 @@ impl Bench {
         ])
     }
 
-    /// The presses that the run has, two of them as they were pressed.
+    /// Checks that the run has two presses with the depths, forces and readings of the log.
     fn has_presses(&self) {
         let recording = Recording::read_parquet(&self.path("run/recordings/presses.parquet")).unwrap();
         assert_eq!(recording.provenance, Provenance::Emulated);
@@ -202,7 +202,7 @@ fn a_bag_that_was_cut_is_read_up_to_there_and_that_is_said() {
     let output = bench.import(&bag, "import.toml");
     assert!(output.status.success(), "{}", said(&output));
     assert!(
-        said(&output).contains("was cut; it is read up to there"),
+        said(&output).contains("is truncated; it is read up to that point"),
         "{}",
         said(&output)
     );
@@ -221,7 +221,7 @@ fn what_is_not_in_a_bag_is_refused_with_what_is() {
     refused(
         &import("/wrench:", "/ft:"),
         &[
-            "touch.mcap: column `/ft:force.z` is of no topic",
+            "touch.mcap: column `/ft:force.z` is of an unknown topic",
             "/touch (std_msgs/msg/Float32MultiArray, 400 messages)",
             "/wrench (geometry_msgs/msg/WrenchStamped, 400 messages)",
         ],
@@ -259,7 +259,7 @@ fn a_description_is_guessed_of_a_bag() {
     assert!(summary.contains("\"presses\": 2,"), "{summary}\n{guess}");
 }
 
-/// A bag has the ending of a log, and is none.
+/// A bag has the file extension of a log, but is no log.
 #[test]
 fn a_bag_of_readings_alone_is_characterized() {
     let bench = Bench::new();
@@ -296,9 +296,9 @@ fn topics_that_cannot_be_named_so() {
     let export = |topic: &str| twintac(&["export", text(&own), "--ros", text(&out), "--topic", topic]);
     refused(
         &export("touch=/touch"),
-        &["none called `touch`", "tactile, pressure"],
+        &["`touch` is unknown", "tactile, pressure"],
     );
-    refused(&export("wrench=ft"), &["`ft` is no name of a topic"]);
+    refused(&export("wrench=ft"), &["`ft` is not a name of a topic"]);
     assert!(!out.exists());
     let ros = bench.path("ros");
     let again = ["export", text(&own), "--ros", text(&ros)];
@@ -346,7 +346,7 @@ fn a_stream_is_recorded_beside_its_rows_or_alone() {
     );
 }
 
-/// How many tactile frames a log has, and how it ends.
+/// The number of tactile frames of a log, and how it ends.
 fn n_frames(path: &Path) -> (usize, Option<Ending>) {
     let mut reader = LogReader::open(path).unwrap();
     let bodies = reader.by_ref().map(|message| message.unwrap().body);
@@ -372,7 +372,7 @@ fn a_stream_that_is_ended_finishes_its_log_and_one_that_is_killed_leaves_a_cut_o
         let partial = folder
             .path()
             .join(format!("{}.partial", log.file_name().unwrap().to_str().unwrap()));
-        // Frames have been flushed once the file has more than its start.
+        // Frames have been written if the file is longer than its start.
         let is_flushed = || fs::metadata(&partial).is_ok_and(|file| file.len() > 60_000);
         for _ in 0..1200 {
             if is_flushed() {

@@ -1,4 +1,5 @@
-//! What the command line says, as snapshots. After a wanted change: `INSTA_UPDATE=always cargo test --release --workspace`.
+//! Snapshots of the command line's output. After an intended change:
+//! `INSTA_UPDATE=always cargo test --release --workspace`.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -57,6 +58,26 @@ fn help_on_each_command() {
     }
     insta::assert_snapshot!("help_fast_train", said(&["help", "fast", "train"]));
     insta::assert_snapshot!("help_fast_imperfection", said(&["help", "fast", "imperfection"]));
+}
+
+/// The pictures of PhysTac in the documentation. After an intended change:
+/// `twintac sensor show sensors/phystac.toml --draw FILE`.
+#[test]
+fn pictures_of_phystac_are_those_of_its_description() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+    let folder = tempfile::tempdir().unwrap();
+    for picture in ["docs/phystac.png", "crates/app/twintac/phystac.svg"] {
+        let drawn = folder.path().join(Path::new(picture).file_name().unwrap());
+        said(&[
+            "sensor",
+            "show",
+            "sensors/phystac.toml",
+            "--draw",
+            drawn.to_str().unwrap(),
+        ]);
+        let same = std::fs::read(drawn).unwrap() == std::fs::read(root.join(picture)).unwrap();
+        assert!(same, "{picture} shows another description");
+    }
 }
 
 #[test]

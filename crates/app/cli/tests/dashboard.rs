@@ -1,11 +1,11 @@
-//! The dashboard in a terminal that ends it.
+//! The dashboard in a terminal, ended by a signal.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
 use std::process::{Command, Stdio};
 
-/// What the terminal got of a dashboard that a signal ends as soon as it is shown.
+/// The terminal output of a dashboard that a signal ends as soon as it is shown.
 fn ended_by(signal: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let (log, program) = (folder.path().join("terminal"), env!("CARGO_BIN_EXE_twintac"));
@@ -16,7 +16,7 @@ fn ended_by(signal: &str) -> String {
         folder.path().display(),
         log.display()
     );
-    let mut terminal = Command::new("script"); // of util-linux: runs a command in a terminal of its own
+    let mut terminal = Command::new("script"); // part of util-linux: runs a command in a terminal of its own
     terminal
         .args(["-qefc", &line])
         .arg(&log)

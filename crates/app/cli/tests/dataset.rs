@@ -1,4 +1,5 @@
-//! A shard that is killed while it is made leaves nothing half-written, and is made by the same command.
+//! A shard that is killed while it is made leaves no half-written file, and the same command makes
+//! it.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -19,7 +20,7 @@ fn dataset(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-/// Files with the names of whole ones.
+/// The files with final names.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap();
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();

@@ -1,5 +1,6 @@
-//! What a folder keeps never stands for something else. Whatever is changed between two calls of a command in one folder, the second call leaves there what it leaves in a
-//! fresh folder, to the last bit, or is refused with the difference named.
+//! Kept results never stand for other inputs. Whatever changes between two calls of a command in
+//! one folder, the second call gives the same files as in a fresh folder, to the last bit, or is
+//! refused with the difference named.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -51,7 +52,7 @@ fn box_stl([half_x_mm, half_y_mm, height_mm]: [f64; 3]) -> String {
     text + "endsolid box\n"
 }
 
-/// The files that commands read, as coarse and short as will go.
+/// The input files of the commands, as coarse and short as still works.
 fn inputs() -> BTreeMap<&'static str, String> {
     let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
     let sensor = read("sensors/phystac.toml");
@@ -95,7 +96,8 @@ fn inputs() -> BTreeMap<&'static str, String> {
             "[simulate]\nedges_per_height = 2.0\nedges_per_contact_radius = 1.0\ndepth_step_mm = 0.5\n".to_owned(),
         ),
         ("protocol.toml", protocol.to_owned()),
-        // The radius of a ball is one of what the sensor's description only infers: presses with it alone have it fitted.
+        // The sensor's description marks the ball's radius as inferred, so presses with the ball
+        // alone have the radius fitted.
         ("ball.toml", protocol.replace("block", "sphere-25")),
         ("one.toml", protocol.replace("count = 8", "count = 1")),
         ("moulded.toml", moulded),
@@ -105,7 +107,8 @@ fn inputs() -> BTreeMap<&'static str, String> {
     ])
 }
 
-/// What is changed between two calls: a file, and what in it. Surfaces become smaller; a model is another.
+/// The changes between two calls: a file, and the text in it. Surfaces become smaller; a model is
+/// replaced by another.
 const CHANGES: [(&str, &str, &str, &str); 13] = [
     (
         "the gel's material",
@@ -152,7 +155,7 @@ const CHANGES: [(&str, &str, &str, &str); 13] = [
     ("the presses of a ball", "ball.toml", "[0.5, 0.9]", "[0.4, 0.8]"),
 ];
 
-/// Inputs, and a folder that commands write to.
+/// Inputs, and a folder to which commands write.
 struct Desk(tempfile::TempDir);
 
 impl Desk {
@@ -164,14 +167,15 @@ impl Desk {
         desk
     }
 
-    /// The same, with all that commands have written: elsewhere.
+    /// A copy at another path, with all outputs of commands.
     fn copied(&self) -> Self {
         let desk = Self(tempfile::tempdir().unwrap());
         copy(self.0.path(), desk.0.path());
         desk
     }
 
-    /// Gives another desk its own runs: a model, recordings that the model has not seen, another model, and a fast gel.
+    /// Gives another desk this one's runs: a model, recordings that the model has not seen, another
+    /// model, and a surrogate.
     fn give(&self, other: &Self) {
         copy(&self.path("run"), &other.path("first"));
         copy(&self.path("second"), &other.path("second"));
@@ -205,7 +209,7 @@ impl Desk {
         }
     }
 
-    /// Runs a command; words that are the names of inputs or outputs become paths.
+    /// Runs a command. Words that name inputs or outputs become paths.
     fn call(&self, command: &str) -> Output {
         let words = command
             .split_whitespace()
@@ -220,7 +224,7 @@ impl Desk {
             .unwrap()
     }
 
-    /// Runs commands until one is refused; what that says.
+    /// Runs commands until one is refused, and returns its error.
     fn all(&self, commands: &[&str]) -> Result<(), String> {
         for command in commands {
             let output = self.call(command);
@@ -231,7 +235,7 @@ impl Desk {
         Ok(())
     }
 
-    /// What files have, but for where the desk stands.
+    /// The contents of files, without the path of the desk.
     fn results(&self, files: &[&str]) -> Vec<Vec<u8>> {
         let here = self.0.path().display().to_string();
         let read = |file: &&str| {
@@ -258,11 +262,11 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Commands that work in one folder, and the files that say what came of it.
+/// Commands that work in one folder, and the files of their results.
 struct Work {
     commands: &'static [&'static str],
     results: &'static [&'static str],
-    /// The changes that reach it: all of a file, or one by its name.
+    /// The changes that affect the results: all changes of a file, or one by its name.
     reached_by: &'static [&'static str],
 }
 
@@ -274,7 +278,7 @@ impl Work {
 
 const RECORD: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --out @run";
 
-/// Presses that nothing is taught by.
+/// Presses that are not used for training.
 const UNSEEN: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --seed 2 --out @second";
 
 const WORKS: [Work; 10] = [
@@ -304,7 +308,8 @@ const WORKS: [Work; 10] = [
             "protocol.toml",
         ],
     },
-    // The model is that of a first run, the recordings are those of a second one, and the sensor is another.
+    // The model comes from a first run, the recordings come from a second one, and the sensor is
+    // another.
     Work {
         commands: &[
             "adapt --model @first/model --recordings @second/recordings/presses.parquet --sensor @sensor.toml --presses 3 --out @adapted",
@@ -329,7 +334,8 @@ const WORKS: [Work; 10] = [
             "fast/judgement.json",
             "felt/shard-000001-of-000001.parquet",
         ],
-        // By far the slowest: the sensor's description is no more to it than to the others.
+        // This is by far the slowest, and the sensor's description affects it as it affects the
+        // others, so it is tested there.
         reached_by: &["gel.toml", "block.stl"],
     },
     Work {
@@ -372,7 +378,8 @@ const WORKS: [Work; 10] = [
         results: &["designs/designs.csv", "designs/best.toml"],
         reached_by: &["gel.toml", "sensor.toml"],
     },
-    // A ball whose radius is fitted: cross-validation has tables of several radii, which it keeps itself.
+    // A ball whose radius is fitted: cross-validation has tables of several radii, which it keeps
+    // itself.
     Work {
         commands: &[
             "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @ball.toml --settings @settings.toml --out @ball",
@@ -391,7 +398,7 @@ const WORKS: [Work; 10] = [
     },
 ];
 
-/// Words that name a difference.
+/// Words of errors that name a difference.
 const REFUSALS: [&str; 7] = [
     "another",
     "other settings",
@@ -456,7 +463,7 @@ fn what_is_kept_is_what_a_fresh_folder_has() {
     assert!(wrong.is_empty(), "\n{wrong}");
 }
 
-/// A folder that was moved is the same, and a stage whose inputs changed since is refused by name.
+/// A folder that was moved stays valid. A stage whose inputs have changed since is refused by name.
 #[test]
 fn stages_are_read_only_as_they_would_be_made_now() {
     let desk = Desk::new();
@@ -497,7 +504,7 @@ fn stages_are_read_only_as_they_would_be_made_now() {
     let refused = moved.all(&["evaluate --run @run"]).unwrap_err();
     assert!(refused.contains("changed since"), "{refused}");
 
-    // Other presses, as another seed draws them.
+    // Other presses, drawn with another seed.
     let again = desk.copied();
     again
         .all(&[&RECORD.replace("record", "record --seed 7")])
@@ -511,7 +518,8 @@ fn stages_are_read_only_as_they_would_be_made_now() {
     }
 }
 
-/// A model has all that it needs: the description that it was trained with, and the surfaces that this names.
+/// A model folder is complete: it has the description of its training, and the surfaces that the
+/// description names.
 #[test]
 fn a_model_stands_alone() {
     let desk = Desk::new();
@@ -542,7 +550,8 @@ fn a_model_stands_alone() {
     assert!(refused.contains("SHA-256"), "{refused}");
 }
 
-/// Logs of one bench are not taken for those of another: nothing is recorded anew beside them, and nothing is written over them.
+/// Logs of one bench are not used for another: nothing is recorded beside them, and nothing is
+/// overwritten.
 #[test]
 fn logs_are_of_one_bench_and_sensor() {
     let wired = "record --lab @reality.toml --sensor @sensor.toml --protocol @one.toml --settings @settings.toml --out @run";
@@ -606,7 +615,7 @@ fn a_run_has_one_owner() {
         .unwrap();
 }
 
-/// While a program works in a folder, every command that would work there says so at once.
+/// While a program works in a folder, every other command that would work there fails at once.
 #[test]
 fn a_folder_in_use_is_refused() {
     let desk = Desk::new();

@@ -1,7 +1,8 @@
-"""Reads a trained twin with NumPy and safetensors alone, and compares what it reads with what the program wrote.
+"""Evaluates a trained twin with NumPy and safetensors alone, and compares the readings with those
+that the program wrote.
 
-Usage: numpy_model.py RUN, the folder of a run of which the paper's network or a twin with ports is left. Prints the largest difference over
-the largest reading.
+Usage: numpy_model.py RUN, the folder of a run whose twin is the paper's network or a twin with port
+pressures. Prints the largest difference, divided by the largest reading.
 """
 
 import json
@@ -26,7 +27,7 @@ error_function = np.vectorize(math.erf)
 
 
 def perceptron(rows):
-    """GELU between the layers, nothing behind the last."""
+    """A perceptron with GELU between the layers, and no activation after the last one."""
     n_layers = sum(name.endswith(".weight") for name in weights)
     for layer in range(n_layers):
         rows = rows @ weights[f"layer{layer}.weight"] + weights[f"layer{layer}.bias"]
@@ -36,7 +37,9 @@ def perceptron(rows):
 
 
 def paper(features):
-    """Readings, kPa, from the stress feature, kPa/mm; `[n_frames, n_taxels]`."""
+    """Readings of the paper's network, kPa, from the stress feature, kPa/mm;
+    `[n_frames, n_taxels]`.
+    """
     stress = np.array(features["stress_kpa_per_mm"])
     rows = (stress - normal["stress_mean_kpa_per_mm"]) / normal["stress_deviation_kpa_per_mm"]
     return perceptron(rows) * normal["reading_kpa"]
@@ -52,13 +55,15 @@ def ports(features):
         elastic = elastic + size * start["correction_limit"] * np.tanh(perceptron(rows))
     elastic = elastic * normal["reading_kpa"]
 
-    # The port's law: steeper (s > 0) or flatter (s < 0) than in proportion; tension in proportion.
+    # The static nonlinearity of the port: the reading grows faster (s > 0) or slower (s < 0) than
+    # in proportion to the pressure; in tension it is proportional.
     s = np.array(start["gains"]["stiffening_per_kpa"])
     pushed = np.maximum(elastic, 0.0)
     law = np.where(s >= 0, pushed * (1 + s * pushed), pushed / (1 - np.minimum(s, 0.0) * pushed))
     relaxed = law + np.minimum(elastic, 0.0)
 
-    # The gel's memory: overstresses that follow each change and fade, each with its share in the reading.
+    # Viscoelastic relaxation: overstresses that follow each change and decay, each with its share
+    # in the reading.
     share = np.maximum(np.array(start["gains"]["memory"]).T, 1e-3)
     share = np.log1p(np.exp(np.log(np.expm1(share)) + weights["memory_change"]))
     readings = relaxed.copy()
@@ -74,7 +79,7 @@ def ports(features):
 
 
 def read(features):
-    """Readings above those of the frames without contact, kPa; `[n_frames, n_taxels]`."""
+    """Readings above those of the non-contact frames, kPa; `[n_frames, n_taxels]`."""
     assert features["since_previous_s"] is None, "the gel rested before each press"
     readings = paper(features) if twin["variant"] == "paper" else ports(features)
     zero = features["zero_frames"]

@@ -1,4 +1,5 @@
-//! A trained twin is read by NumPy alone. `TWINTAC_PYTHON` names a Python with `numpy` and `safetensors`.
+//! NumPy alone can evaluate a trained twin. `TWINTAC_PYTHON` names a Python interpreter with
+//! `numpy` and `safetensors`.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // a test that cannot set itself up has failed
 

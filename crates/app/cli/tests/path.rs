@@ -1,4 +1,5 @@
-//! `simulate --path`: a case set up from two files, against converged results of two other finite-element codes.
+//! `simulate --path`: a case from two files, against converged results of two other finite-element
+//! programs.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -51,8 +52,9 @@ poses = [
 points = [{ name = "opposite", position_mm = [-4.0, -4.0, 0.0], radius_mm = 1.0 }]
 "#;
 
-/// Depth, mm; force, N; pressure at the bottom at (±4, ±4) mm, mean over a disc of 1 mm, kPa. 20-node hexahedra of one code and
-/// quadratic tetrahedra with a pressure field of another agree to 0.5 % in force and 1 % in pressure.
+/// Depth, mm; force, N; pressure at the bottom at (±4, ±4) mm, mean over a disc of 1 mm, kPa.
+/// 20-node hexahedra of one program and quadratic tetrahedra with a pressure field of another agree
+/// to 0.5 % in force and 1 % in pressure.
 const CONVERGED: [(f64, f64, f64); 4] = [
     (0.5, 0.2155, 0.642),
     (1.0, 0.7100, 2.109),

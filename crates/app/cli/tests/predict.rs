@@ -1,4 +1,5 @@
-//! A tiny trained twin: `predict`, from it to readings along paths and protocols, and what else can be done with a model.
+//! A very small trained twin: predictions along paths and protocols, and the other commands that
+//! use a model.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -9,7 +10,7 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use twintac_recording::Recording;
 
-/// A gel as coarse, presses as few and training as short as will go.
+/// A gel as coarse, presses as few and training as short as still works.
 const SETTINGS: &str = r#"
 [simulate]
 edges_per_height = 4.0
@@ -43,7 +44,7 @@ hold_s = 0.1
 clearance_mm = 1.0
 "#;
 
-/// The same press.
+/// The same press as a path.
 const PATH: &str = r#"
 summary = "One press"
 indenter = "sphere-25"
@@ -56,7 +57,7 @@ poses = [
 ]
 "#;
 
-/// How its zeros move with temperature: taxel t3's most.
+/// Temperature coefficients of its zeros, the largest for taxel t3.
 fn temperature() -> String {
     let taxel = |taxel: usize| {
         let kpa_per_k = if taxel == 3 { 0.75 } else { 0.0 };
@@ -118,7 +119,7 @@ impl Files {
         twintac(&[&["predict", "--model", model.to_str().unwrap()], arguments].concat())
     }
 
-    /// A model is not judged on the presses that taught it.
+    /// A model is not evaluated on presses that it was trained on.
     fn refuse_what_taught(&self) {
         let (model, run) = (self.model(), self.folder.path().join("run"));
         let presses = run.join("recordings/presses.parquet");
@@ -131,11 +132,11 @@ impl Files {
         ]);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains("10 of 10 presses taught this model"), "{said}");
+        assert!(said.contains("trained on 10 of 10 presses"), "{said}");
     }
 
-    /// Recordings of another sensor are not its own, though its taxels have the same names; unless
-    /// that is another name of the same sensor.
+    /// Recordings of another sensor are refused even if its taxels have the same names, unless the
+    /// option says that it is another name of the same sensor.
     fn refuse_another_sensor(&self) {
         let (model, presses) = (self.model(), self.folder.path().join("tip.parquet"));
         let own = self.folder.path().join("run/recordings/presses.parquet");
@@ -164,15 +165,12 @@ impl Files {
             }
         }
         let renamed = said("evaluate", &["--recorded-as", "phystac-tip"]);
-        assert!(
-            renamed.contains("10 of 10 presses taught this model"),
-            "{renamed}"
-        );
+        assert!(renamed.contains("trained on 10 of 10 presses"), "{renamed}");
         let wrong = said("evaluate", &["--recorded-as", "mine"]);
         assert!(wrong.contains("--recorded-as is `mine`"), "{wrong}");
     }
 
-    /// Its run is judged for other seeds, each with presses of its own.
+    /// Its run is cross-validated for other seeds, each with its own test presses.
     fn judge_again(&self) {
         let run = self.folder.path().join("run");
         let output = twintac(&[
@@ -193,7 +191,8 @@ impl Files {
         assert!(run.join("cross_validation/errors.png").exists());
     }
 
-    /// It is adapted with two presses of another recording; the third judges. Presses that taught it are refused.
+    /// It is adapted with two presses of another recording, and evaluated on the third. Presses
+    /// that it was trained on are refused.
     fn adapt(&self) {
         let root = self.folder.path().to_str().unwrap();
         let [reality, settings] = ["reality.toml", "settings.toml"].map(|name| format!("{root}/{name}"));
@@ -225,15 +224,15 @@ impl Files {
         let output = adapt(&format!("{root}/run/recordings/presses.parquet"), &refused);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains("10 of 10 presses taught this model"), "{said}");
+        assert!(said.contains("trained on 10 of 10 presses"), "{said}");
         assert!(!Path::new(&refused).exists());
     }
 
-    /// It finds from readings where and how deep it was pressed: rows beside what the recording says. Settings that cannot be are refused before
-    /// anything is solved.
+    /// It estimates from readings where and how deep it was pressed, in rows beside the recorded
+    /// values. Settings that are not allowed are refused before anything is solved.
     fn locate(&self) {
         let run = self.folder.path().join("run");
-        // Names with letters that patterns and tables know otherwise.
+        // Names with characters that are special in patterns and tables.
         let mut recording = Recording::read_parquet(&run.join("recordings/presses.parquet")).unwrap();
         recording
             .presses
@@ -266,7 +265,7 @@ impl Files {
         let output = locate("deepest_mm = 1.2", "sphere-25");
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{said}");
-        assert!(said.contains("presses that it never saw: "), "{said}");
+        assert!(said.contains("held-out presses: "), "{said}");
         let mut table = csv::Reader::from_reader(&output.stdout[..]);
         let header = table.headers().unwrap().clone();
         let first = [
@@ -300,7 +299,7 @@ impl Files {
         assert!(place_mm < 1.0 && depth_mm < 0.15, "{place_mm} mm, {depth_mm} mm");
     }
 
-    /// What is printed as JSON.
+    /// The prediction that is printed as JSON.
     fn predicted(&self, arguments: &[&str]) -> Value {
         let output = self.predict(&[arguments, &["--json"]].concat());
         let said = String::from_utf8_lossy(&output.stderr);
@@ -333,7 +332,7 @@ fn numbers(row: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// The deepest frame's force and readings.
+/// Force and readings of the deepest frame.
 fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
     let press = &predicted["presses"][0];
     let (depth_mm, force_n) = (numbers(&press["depth_mm"]), numbers(&press["force_n"]));
@@ -343,7 +342,7 @@ fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
     (force_n[deepest], numbers(&press["readings_kpa"][deepest]))
 }
 
-// long: one model, which takes seconds to train, is used in every way.
+// long: one model, which takes seconds to train, is used by all commands
 #[test]
 fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let files = Files::with_twin();
@@ -355,7 +354,7 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let [path, protocol, ball] = [("path.toml", PATH), ("one.toml", ONE_PRESS), ("ball.toml", BALL)]
         .map(|(name, text)| files.write(name, text));
 
-    // A press is the same by its protocol and by its path, but for their meshes.
+    // Protocol and path give the same press, apart from their meshes.
     let pressed = files.predicted(&["--protocol", &protocol]);
     assert_eq!(
         pressed,
@@ -394,7 +393,7 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     assert_eq!(rows.count(), 42);
     assert!(fs::read_to_string(&plot).unwrap().contains("reading (kPa)"));
 
-    // A smaller ball that nobody has trained with takes less force.
+    // A smaller ball, which was not in the training, takes less force.
     let smaller = files.write("smaller.toml", &PATH.replace("sphere-25", "ball-8"));
     let (smaller_n, _) = deepest(&files.predicted(&["--path", &smaller, "--indenter", &ball]));
     let both = files.write(
@@ -413,7 +412,7 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
         "{smaller_n} {ball_n}"
     );
 
-    // Chips that are warmer than at the zero.
+    // Chips that are warmer than at their zero.
     let readings = |arguments: &[&str]| -> Vec<Vec<f64>> {
         let output = files.predict(&[&["--path", &path, "--json"], arguments].concat());
         let said = String::from_utf8_lossy(&output.stderr);
@@ -430,7 +429,7 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
         }
     }
 
-    // What is wrong is said, and nothing else.
+    // A wrong input gives an error, and no other output.
     let refused = |arguments: &[&str], words: &[&str]| {
         let output = files.predict(arguments);
         let text = String::from_utf8_lossy(&output.stderr);

@@ -1,4 +1,4 @@
-//! Same seed, same bits: at any number of threads, and after any kill.
+//! The same seed gives the same bits, with any number of threads, and after any kill.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// A gel as coarse, presses as few and training as short as will go: what counts is that they repeat.
+/// A gel as coarse, presses as few and training as short as still works: the test is about
+/// repeatability.
 const SETTINGS: &str = "
 [simulate]
 edges_per_height = 2.0
@@ -30,7 +31,7 @@ hold_s = 0.2
 clearance_mm = 0.3
 "#;
 
-/// The stages one after the other, and a file whose presence tells that the stage is at work.
+/// The stages in order, each with a file whose presence shows that the stage is running.
 const STAGES: [(&[&str], &str); 5] = [
     (&["record", "--at-once"], "recordings.partial/presses"),
     (&["align", "--run"], "simulation.partial/depth_tables"),
@@ -95,7 +96,8 @@ impl Bench {
         );
     }
 
-    /// Kills the stage as soon as `sign` is there and has grown a little; false if the stage was done before.
+    /// Kills the stage as soon as `sign` exists and has grown a little; returns false if the stage
+    /// was done before.
     fn kill(&self, stage: &[&str], sign: &str) -> bool {
         let mut child = self.command(stage).spawn().unwrap();
         while !self.run().join(sign).exists() {

@@ -1,4 +1,5 @@
-//! A board of a builder, from its serial port to rows, to a log and to a sheet of its sensor: the board is emulated, the firmware and the wire are not.
+//! A user's board, from its serial port to rows, to a log and to a data sheet of its sensor. The
+//! board is emulated; its firmware and the protocol are the real ones.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
@@ -15,7 +16,7 @@ use serialport::{SerialPort, TTYPort};
 use twintac_emulate::{FaultKind, Hertz, LabClock, Moment, ScheduledFault};
 use twintac_microcontroller::{Microcontroller, N_TAXELS, Setup};
 
-/// The taxel that goes away, and when, s of the board's clock.
+/// The taxel that disappears, and when, s on the board's clock.
 const AWAY: usize = 3;
 const AWAY_S: [f64; 2] = [1.0, 1.5];
 
@@ -39,7 +40,7 @@ fn data(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// PhysTac with the barometers that the board has.
+/// PhysTac with the board's kind of barometers.
 fn sensor(folder: &Path) -> String {
     let paper = std::fs::read_to_string(root().join("sensors/phystac.toml")).unwrap();
     let path = folder.join("my-phystac.toml");
@@ -52,12 +53,13 @@ fn sensor(folder: &Path) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// A board on a pseudo-terminal, in a thread of its own, until it is unplugged. One of its chips goes away for a while.
+/// A board on a pseudo-terminal, in a thread of its own, until it is unplugged. One of its chips
+/// disappears for a while.
 struct Plugged {
     port: String,
     is_unplugged: Arc<AtomicBool>,
     board: JoinHandle<()>,
-    _computer: TTYPort, // the port stays, also while no program has it open
+    _computer: TTYPort, // keeps the port alive while no program has it open
 }
 
 fn plug() -> Plugged {
@@ -74,7 +76,7 @@ fn plug() -> Plugged {
             begins: Moment::TimeS(AWAY_S[0]),
             lasts: Some(Moment::TimeS(AWAY_S[1] - AWAY_S[0])),
         }];
-        // It starts when the program that reads it has asked for something.
+        // It starts when the reading program has sent a request.
         let mut heard = [0; 256];
         while !ends.load(Ordering::Relaxed) && wire.bytes_to_read().unwrap() == 0 {
             thread::yield_now();
@@ -110,7 +112,7 @@ impl Plugged {
     }
 }
 
-/// What `stream` prints of three seconds of a board.
+/// The output of `stream` for three seconds of a board.
 fn stream(board: &Plugged, line: &Path, sensor: &str, to: [&str; 2]) -> String {
     let line = line.to_str().unwrap();
     let from = [

@@ -1,4 +1,4 @@
-//! A log of readings alone, from the file to frames without what temperature does to their zeros.
+//! A log of readings alone: from the file to temperature coefficients, and to compensated frames.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// How somebody else logged eight barometers, Pa, and one thermometer.
+/// The import description of another laboratory's log of eight barometers, Pa, and one thermometer.
 const IMPORT: &str = r#"
 sensor = "phystac"
 provenance = "real"
@@ -34,7 +34,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
 }
 
-/// Ten minutes at 5 Hz in which the chips get 5 K warmer; taxel `k`'s zero moves by `k` tenths of a kPa for each. In the middle a finger touches.
+/// Ten minutes at 5 Hz in which the chips warm up by 5 K. The zero of taxel `k` drifts by `k`
+/// tenths of a kPa per K. In the middle a finger touches.
 fn log() -> String {
     let mut log = "ms,p0,p1,p2,p3,p4,p5,p6,p7,temp\n".to_owned();
     for row in 0..3000_u32 {
@@ -51,7 +52,7 @@ fn log() -> String {
     log
 }
 
-/// Exit code 2, one error, which holds all the words.
+/// Checks for exit code 2, and one error that contains all the words.
 fn refused(output: &Output, words: &[&str]) {
     let text = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{text}");
@@ -106,7 +107,7 @@ fn from_a_log_of_readings_alone_to_frames_without_drift() {
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("readings alone") && report.contains("as if something touched it"));
 
-    // Without a description of its columns, and as presses, it is refused.
+    // It is refused without an import description, and as presses.
     refused(&twintac(&characterize), &["log.csv", "--import"]);
     let run = folder.path().join("run");
     let imported = [

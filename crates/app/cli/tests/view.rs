@@ -40,7 +40,7 @@ impl Running {
         answer
     }
 
-    /// Whether it ends by itself after a signal, as if all was done.
+    /// Whether it ends after a signal, with exit code 0.
     fn ends_after(mut self, signal: &str) -> bool {
         let id = self.child.id().to_string();
         assert!(
@@ -78,14 +78,14 @@ fn the_page_is_served_until_a_signal() {
             .unwrap();
         assert!(running.get(&path).ends_with("<title>gel</title>"));
         assert!(running.get("/").starts_with("HTTP/1.1 403 "));
-        // A client that says nothing does not keep it from ending.
+        // A client that sends nothing does not prevent the end.
         let host = running.url["http://".len()..]
             .split('/')
             .next()
             .unwrap()
             .to_owned();
         let silent = TcpStream::connect(host).unwrap();
-        std::thread::sleep(Duration::from_millis(200)); // it has been taken by now
+        std::thread::sleep(Duration::from_millis(200)); // by now the server has accepted it
         assert!(running.ends_after(signal), "{signal}");
         drop(silent);
     }

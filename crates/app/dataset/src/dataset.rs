@@ -1,4 +1,4 @@
-//! A data set, and the work of making it.
+//! A data set, and how its shards are made.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::identity::Inputs;
 use crate::press;
 use crate::{DatasetPlan, LeftOut, MadeShard, Shard};
 
-/// A data set: which presses, of what, read how.
+/// A data set: its inputs, read, and the number of its presses.
 pub struct Dataset {
     inputs: Inputs,
     n_presses: usize,
@@ -22,10 +22,11 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// A data set as planned: reads the files that the plan names, and makes nothing yet.
+    /// Opens a planned data set: reads the files that the plan names, and makes nothing yet.
     ///
     /// # Errors
-    /// A file that cannot be read or is wrong; indenters that the sensor does not have; a twin or a fast gel of another sensor.
+    /// A file that cannot be read or is wrong; indenters that the sensor does not have; a twin or a
+    /// surrogate of another sensor.
     pub fn open(plan: &DatasetPlan) -> Result<Self, WorkError> {
         let inputs = Inputs::read(plan)?;
         let there_are = inputs.protocol.n_presses(&target(&inputs.sensor.sensor))?;
@@ -38,22 +39,24 @@ impl Dataset {
         })
     }
 
-    /// How many presses it has.
+    /// The number of presses.
     #[must_use]
     pub fn n_presses(&self) -> usize {
         self.n_presses
     }
 
-    /// What it is made from: the text of `dataset.toml`. Data sets of the same text are the same.
+    /// The text of `dataset.toml`: all inputs. Data sets with the same text are the same.
     #[must_use]
     pub fn identity(&self) -> &str {
         &self.identity
     }
 
-    /// Makes one shard in a folder, with all threads that there are, unless it is complete there. It appears whole or not at all, whoever else works in the folder.
+    /// Makes one shard in a folder, with all threads of the pool, unless it is complete there. The
+    /// shard appears whole or not at all, even if other programs work in the folder.
     ///
     /// # Errors
-    /// More shards than presses; a folder with shards of another data set or another division; no press that can be simulated; files that cannot be written.
+    /// More shards than presses; a folder with shards of another data set or another division; no
+    /// press that can be simulated; files that cannot be written.
     pub fn make(&self, shard: Shard, folder: &Path, progress: &dyn Progress) -> Result<MadeShard, WorkError> {
         let stretch = shard.stretch(self.n_presses)?;
         let folder = Folder::open(folder, &self.identity, &self.inputs.sensor.text, shard)?;

@@ -1,4 +1,5 @@
-//! The folder of a data set: what appears in it whole or not at all, with several programs at work.
+//! The folder of a data set: files appear in it whole or not at all, even if several programs work
+//! in it.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -11,10 +12,10 @@ use twintac_work::{WorkError, read_text, sha256, sha256_of_file};
 
 use crate::shard::Shard;
 
-/// Says what the data set is.
+/// Name of the file that identifies the data set.
 pub(super) const DATASET: &str = "dataset.toml";
 
-/// Begins the names of folders in which shards are made.
+/// Beginning of the names of temporary folders in which shards are made.
 pub(super) const AT_WORK: &str = ".shard-";
 
 /// A press that could not be simulated.
@@ -26,7 +27,7 @@ pub struct LeftOut {
     pub why: String,
 }
 
-/// What a shard is made of. Two that are made of the same are the same byte for byte.
+/// The content of a shard. Shards with the same manifest are the same byte for byte.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of the program.
@@ -39,7 +40,7 @@ pub struct Manifest {
     pub of: u32,
     /// Always [`Provenance::Simulated`].
     pub provenance: Provenance,
-    /// Rows of the Parquet file: frames of all presses.
+    /// Rows of the Parquet file: the frames of all presses.
     pub rows: u64,
     /// SHA-256 of the Parquet file.
     pub parquet_sha256: String,
@@ -49,16 +50,16 @@ pub struct Manifest {
     pub left_out: Vec<LeftOut>,
 }
 
-/// A shard that is complete.
+/// A complete shard.
 #[derive(Clone, Debug, Serialize)]
 pub struct MadeShard {
     /// The Parquet file.
     pub parquet: PathBuf,
     /// The manifest's file.
     pub manifest_file: PathBuf,
-    /// Whether it was there already.
+    /// Whether the shard was complete before.
     pub was_kept: bool,
-    /// What it is made of.
+    /// The content of the shard.
     #[serde(flatten)]
     pub manifest: Manifest,
 }
@@ -70,7 +71,8 @@ pub(super) struct Folder {
 }
 
 impl Folder {
-    /// The folder of the data set that is told by `identity`: it is made if need be, refused if it is another's.
+    /// Opens the folder of the data set with this identity. A new folder is created; a folder of
+    /// another data set is an error.
     pub(super) fn open(path: &Path, identity: &str, sensor: &str, shard: Shard) -> Result<Self, WorkError> {
         fs::create_dir_all(path).map_err(WorkError::file("creating", path))?;
         let folder = Self {
@@ -105,7 +107,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// A shard that is there as it was made.
+    /// A shard that is complete and unchanged in the folder.
     pub(super) fn complete(&self, shard: Shard) -> Result<Option<MadeShard>, WorkError> {
         let (parquet, manifest_file) = files(&self.path, shard);
         let (true, Ok(manifest)) = (manifest_file.exists(), read_json::<Manifest>(&manifest_file)) else {
@@ -122,7 +124,7 @@ impl Folder {
         }))
     }
 
-    /// Puts a shard there: the Parquet file first, and the manifest when that has its name.
+    /// Writes a shard: the Parquet file gets its name first, and the manifest last.
     pub(super) fn put(
         &self,
         shard: Shard,
@@ -156,7 +158,7 @@ impl Folder {
         })
     }
 
-    /// A folder of this program's own, where nobody looks; it goes when it is dropped.
+    /// A temporary folder of this program. It is removed when it is dropped.
     fn desk(&self, shard: Shard) -> Result<tempfile::TempDir, WorkError> {
         let prefix = format!("{AT_WORK}{}-", shard.number());
         let desk = tempfile::Builder::new().prefix(&prefix).tempdir_in(&self.path);
@@ -164,7 +166,7 @@ impl Folder {
     }
 }
 
-/// The Parquet file of a shard, and its manifest.
+/// The paths of a shard's Parquet file and manifest.
 pub(super) fn files(folder: &Path, shard: Shard) -> (PathBuf, PathBuf) {
     let stem = shard.stem();
     (
@@ -189,7 +191,8 @@ fn rename(from: &Path, to: &Path) -> Result<(), WorkError> {
     fs::rename(from, to).map_err(WorkError::file("writing", to))
 }
 
-/// Gives a file a name that none has; if one has it, that one stays. Where files cannot have two names, the last one stays.
+/// Gives a file a new name. If a file of that name exists, it stays. On file systems without hard
+/// links the last file stays.
 fn appear(from: &Path, to: &Path) -> Result<(), WorkError> {
     match fs::hard_link(from, to) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => rename(from, to),

@@ -1,4 +1,4 @@
-//! What a data set is made from, read, and as a text that tells it from every other.
+//! The inputs of a data set, read, and the text that identifies it.
 
 use std::path::Path;
 
@@ -19,12 +19,12 @@ use twintac_work::{WorkError, read_text, target};
 
 use crate::plan::{DatasetPlan, FastSource};
 
-/// All that a plan names.
+/// The inputs that a plan names.
 pub(super) struct Inputs {
     pub(super) sensor: SensorFile,
     pub(super) protocol: Protocol,
     pub(super) gel: Gel,
-    /// How finely it is solved.
+    /// Settings of the simulation.
     simulate: SimulateSettings,
     pub(super) fast: Option<Keyed<FastTables>>,
     pub(super) twin: Option<Model>,
@@ -32,13 +32,13 @@ pub(super) struct Inputs {
     pub(super) imperfection: Option<Imperfection>,
 }
 
-/// `dataset.toml`. Files count by their content, wherever they lie.
+/// The content of `dataset.toml`. Files are identified by their content, not by their path.
 #[derive(Serialize)]
 struct Identity<'a> {
     version: &'static str,
     provenance: Provenance,
     sensor: &'a str,
-    /// Of the description and the surfaces that it names.
+    /// SHA-256 of the description and of the surfaces that it names.
     sensor_sha256: String,
     n_presses: usize,
     seed: u64,
@@ -52,7 +52,7 @@ struct Identity<'a> {
     twin_sha256: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     imperfection: Option<&'a Imperfection>,
-    /// Of no effect on a fast gel but for the depths of tables.
+    /// With a surrogate these settings have no effect but on the depths of tables.
     simulate: &'a SimulateSettings,
     protocol: &'a Protocol,
 }
@@ -64,7 +64,7 @@ impl Inputs {
         let (sensor, gel, simulate) = match (&twin, &plan.twin) {
             (Some(model), Some(folder)) => {
                 if plan.settings.is_some() {
-                    let problem = "--settings does not go with --twin: a twin's gel is simulated as it was for training";
+                    let problem = "--settings cannot be used with --twin: a twin's gel is simulated as it was for training";
                     return Err(WorkError::Input(problem.to_owned()));
                 }
                 of_twin(model, folder, described)?
@@ -83,7 +83,7 @@ impl Inputs {
             None => plan.at_random(&sensor.sensor)?,
             Some(file) => read_protocol(file)?,
         };
-        protocol.plan_in_turn(&target(&sensor.sensor), plan.seed, 0..1)?; // names what the sensor does not have
+        protocol.plan_in_turn(&target(&sensor.sensor), plan.seed, 0..1)?; // An error names what the sensor does not have.
         let fast = plan.fast.as_ref().map(|source| fast_gel(source, &sensor));
         let fast = fast.transpose()?;
         let is_paper = twin
@@ -91,14 +91,14 @@ impl Inputs {
             .is_some_and(|model| model.twin.variant() == Variant::Paper);
         if fast.is_some() && is_paper {
             return Err(WorkError::Input(
-                "the paper's network reads stresses, which a fast gel does not know: leave --fast out"
+                "the paper's network reads stresses, which a surrogate does not compute: leave --fast out"
                     .to_owned(),
             ));
         }
         let imperfection = plan.imperfection.as_deref().map(read_imperfection).transpose()?;
         if imperfection.is_some() && fast.is_none() {
             return Err(WorkError::Input(
-                "--imperfection needs --fast: sensors that lie elsewhere than described are stepped on the fast gel".to_owned(),
+                "--imperfection needs --fast: sensors with variation are computed with the surrogate of the gel".to_owned(),
             ));
         }
         Ok(Self {
@@ -143,7 +143,8 @@ impl Inputs {
     }
 }
 
-/// A twin's gel, on the sensor that taught it or on a described one with the same taxels.
+/// The gel of a twin, with the sensor of its training or with a described sensor that has the same
+/// taxels.
 fn of_twin(
     model: &Model,
     folder: &Path,
@@ -180,11 +181,11 @@ fn fast_gel(source: &FastSource, sensor: &SensorFile) -> Result<Keyed<FastTables
             let tip = FastGel::phystac_tip()?;
             let fast = match tip.check(&sensor.sensor) {
                 Ok(()) => tip,
-                Err(_) if sensor.sensor.name == tip.sensor() => tip, // and is refused by its own name
+                Err(_) if sensor.sensor.name == tip.sensor() => tip, // `FastTables::of` refuses it below, by its own name
                 Err(_) => FastGel::phystac()?,
             };
             let bytes = fast.to_bytes()?;
-            let tables = FastTables::of(fast, &sensor.sensor, "the fast gel that is built in")?;
+            let tables = FastTables::of(fast, &sensor.sensor, "the built-in surrogate")?;
             Ok(Keyed::of_bytes(tables, &bytes))
         }
         FastSource::File(file) => Ok(FastTables::read(file, &sensor.sensor)?.0),
@@ -195,7 +196,7 @@ fn read_protocol(file: &Path) -> Result<Protocol, WorkError> {
     let name = file.display().to_string();
     let protocol = Protocol::parse(&name, &read_text(file)?)?;
     if protocol.parts.is_empty() || !protocol.loads.is_empty() {
-        let problem = "has weights; a data set has presses alone: give it parts, and no [[loads]]";
+        let problem = "has weights, but a data set has only presses: give it parts, and no [[loads]]";
         return Err(WorkError::Input(format!("{name}: {problem}")));
     }
     Ok(protocol)
@@ -208,7 +209,7 @@ fn read_imperfection(file: &Path) -> Result<Imperfection, WorkError> {
     )?)
 }
 
-/// The SHA-256 of what a twin's folder says of it.
+/// SHA-256 of the files in a twin's folder that determine its readings.
 fn hash_of_twin(folder: &Path) -> Result<String, WorkError> {
     let mut digest = Sha256::new();
     for name in ["twin.json", "weights.safetensors"] {

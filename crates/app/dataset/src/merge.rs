@@ -1,4 +1,4 @@
-//! A data set whose shards are all there, and as one file.
+//! Checks that all shards of a data set are complete, and merges them into one file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,38 +11,39 @@ use twintac_work::{Progress, Work, WorkError, sha256_of_file};
 use crate::folder::{AT_WORK, DATASET, LeftOut, Manifest, files, shards};
 use crate::shard::Shard;
 
-/// So many missing shards are named.
+/// Most missing shards that an error names.
 const NAMED: usize = 10;
 
-/// A data set that is whole.
+/// A complete data set.
 #[derive(Clone, Debug, Serialize)]
 pub struct WholeDataset {
     /// Always [`Provenance::Simulated`].
     pub provenance: Provenance,
     /// SHA-256 of `dataset.toml`.
     pub dataset_sha256: String,
-    /// How many shards it has.
+    /// Number of shards.
     pub n_shards: u32,
-    /// How many presses.
+    /// Number of presses.
     pub n_presses: usize,
-    /// How many frames.
+    /// Number of frames.
     pub rows: u64,
     /// Presses that could not be simulated.
     pub left_out: Vec<LeftOut>,
-    /// The file that all presses were merged into.
+    /// The merged file, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub merged: Option<PathBuf>,
 }
 
-/// Checks that all shards of a folder are there and as they were made.
+/// Checks that all shards of a folder are complete and unchanged.
 ///
 /// # Errors
-/// No data set; a shard that is missing, was altered, or is of another data set or division.
+/// A folder without a data set; a shard that is missing, was altered, or belongs to another data
+/// set or division.
 pub fn check_dataset(folder: &Path, progress: &dyn Progress) -> Result<WholeDataset, WorkError> {
     let dataset = folder.join(DATASET);
     if !dataset.exists() {
         return Err(WorkError::Input(format!(
-            "{} is no data set: it has no {DATASET}",
+            "{} is not a data set: it has no {DATASET}",
             folder.display()
         )));
     }
@@ -111,7 +112,7 @@ fn check_shard(folder: &Path, shard: Shard, dataset_sha256: &str) -> Result<Mani
         ))
     };
     let manifest: Manifest =
-        read_json(&manifest_file).map_err(|_| again("is no whole manifest", &manifest_file))?;
+        read_json(&manifest_file).map_err(|_| again("is not a complete manifest", &manifest_file))?;
     if manifest.dataset_sha256 != dataset_sha256 {
         return Err(again("is of a data set of other settings", &manifest_file));
     }
@@ -123,14 +124,15 @@ fn check_shard(folder: &Path, shard: Shard, dataset_sha256: &str) -> Result<Mani
     }
     if sha256_of_file(&parquet)? != manifest.parquet_sha256 {
         return Err(again(
-            "is not what its manifest says: it was altered or cut",
+            "is not what its manifest says: it was altered or truncated",
             &parquet,
         ));
     }
     Ok(manifest)
 }
 
-/// Checks all shards and writes them as one file, in the order of the data set: `presses.parquet` in its folder, or `file`. However the data set was divided, the bytes are the same.
+/// Checks all shards and writes them as one file, in the order of the data set: `presses.parquet`
+/// in its folder, or `file`. The bytes are the same for every division into shards.
 ///
 /// # Errors
 /// Those of [`check_dataset`]; a file that cannot be written.
@@ -176,7 +178,8 @@ pub fn merge_dataset(
     Ok(whole)
 }
 
-/// Removes what killed programs left where they were at work: nobody is, once all shards are there.
+/// Removes temporary folders that killed programs left. When all shards are complete, no program
+/// works in them.
 fn clear(folder: &Path) -> Result<(), WorkError> {
     for entry in fs::read_dir(folder).map_err(WorkError::file("reading", folder))? {
         let entry = entry.map_err(WorkError::file("reading", folder))?;

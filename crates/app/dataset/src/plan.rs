@@ -1,4 +1,4 @@
-//! What a data set is asked for with.
+//! The request for a data set.
 
 use std::path::PathBuf;
 
@@ -6,55 +6,59 @@ use twintac_protocol::{Area, Indenters, Part, Places, Protocol, Range};
 use twintac_sensor::Sensor;
 use twintac_work::WorkError;
 
-/// Presses go so deep, as parts of the gel's height, if the description's limit lets them.
+/// Smallest and largest depth of random presses, as fractions of the gel's height, limited by the
+/// description.
 const DEPTHS: [f64; 2] = [0.05, 0.4];
 
-/// Slowest and fastest, mm/s.
+/// Lowest and highest speed of random presses, mm/s.
 const SPEEDS_MM_PER_S: [f64; 2] = [1.0, 5.0];
 
-/// Shortest and longest hold, s.
+/// Shortest and longest hold of random presses, s.
 const HOLDS_S: [f64; 2] = [0.0, 1.0];
 
-/// How high above the gel presses begin and end, mm.
+/// Height above the gel at which random presses begin and end, mm.
 const CLEARANCE_MM: f64 = 0.5;
 
-/// Presses, unless it is said how many.
+/// Number of random presses if the plan names none.
 const N_PRESSES: usize = 1000;
 
-/// A gel without finite elements.
+/// Where the surrogate (the gel without finite elements) comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FastSource {
-    /// PhysTac's, which is built in.
+    /// The built-in surrogate of PhysTac.
     BuiltIn,
     /// A file that `twintac fast train` made.
     File(PathBuf),
 }
 
-/// What a data set is made from.
+/// The inputs of a data set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DatasetPlan {
-    /// The sensor's description; without one that of the twin, or PhysTac's.
+    /// The sensor's description. Default: that of the twin, or PhysTac's.
     pub sensor: Option<PathBuf>,
-    /// What is pressed; without one, random presses all over the sensor's ports.
+    /// The press protocol. Default: random presses all over the sensor's ports.
     pub protocol: Option<PathBuf>,
-    /// Which indenters press at random; none are all.
+    /// Names of the indenters of random presses. If empty, all.
     pub indenters: Vec<String>,
-    /// So many presses: of a protocol the first in turn, at random 1000 unless it is said.
+    /// Number of presses: the first of a protocol, taken from its indenters in turn, or random ones
+    /// (default 1000).
     pub n_presses: Option<usize>,
-    /// Seed of all chance.
+    /// Seed of all random choices.
     pub seed: u64,
-    /// A gel without finite elements; without one the gel is solved.
+    /// The surrogate. Default: the gel is solved by finite elements.
     pub fast: Option<FastSource>,
-    /// The folder of a trained twin that reads; without one, readings are the pressures at the ports.
+    /// The folder of a trained twin that computes the readings. Default: readings are the pressures
+    /// at the ports.
     pub twin: Option<PathBuf>,
-    /// How imperfect sensors are: each press has one of its own.
+    /// File of the sensor variation: each press has an imperfect sensor of its own.
     pub imperfection: Option<PathBuf>,
-    /// Settings that differ from the usual ones, in a table `[simulate]`.
+    /// File of settings of the simulation, in a table `[simulate]`.
     pub settings: Option<PathBuf>,
 }
 
 impl DatasetPlan {
-    /// Presses at random on a sensor: no farther from its ports than the gel is high, upright, with every indenter as often.
+    /// A protocol of random presses: upright, no farther from the sensor's ports than the gel is
+    /// high, equally many with each indenter.
     pub(super) fn at_random(&self, sensor: &Sensor) -> Result<Protocol, WorkError> {
         let names: Vec<String> = if self.indenters.is_empty() {
             let all = sensor.indenters.iter();
@@ -117,5 +121,5 @@ impl DatasetPlan {
     }
 }
 
-/// Most presses with one indenter.
+/// Most random presses with one indenter.
 const MOST_OF_EACH: u32 = 10_000_000;

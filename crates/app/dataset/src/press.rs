@@ -13,14 +13,14 @@ use twintac_work::{Silent, WorkError};
 
 use crate::identity::Inputs;
 
-/// Deeper than this beyond the end of a table is beyond it, mm.
+/// Tolerance at the end of a table, mm: a depth is beyond the table if it exceeds it by more.
 const BEYOND_MM: f64 = 1e-9;
 
-/// Presses as planned. Nothing of it depends on other presses.
+/// Simulates a planned press. The result does not depend on other presses.
 pub(super) fn press(inputs: &Inputs, plan: &PressPlan, seed: u64) -> Result<Press, WorkError> {
     let store;
     let source: &dyn DepthTableSource = match &inputs.fast {
-        // The gel itself, and no lattice over several presses.
+        // The gel itself, without a lattice that several presses share.
         None => &inputs.gel,
         Some(fast) => {
             store = DepthTableStore::of(inputs.gel.clone(), &Silent)?.with_fast(Some(fast));
@@ -37,7 +37,7 @@ pub(super) fn press(inputs: &Inputs, plan: &PressPlan, seed: u64) -> Result<Pres
     }
 }
 
-/// Readings are a twin's.
+/// A press with the readings of a twin.
 fn by_twin(
     inputs: &Inputs,
     model: &Model,
@@ -50,7 +50,8 @@ fn by_twin(
     Ok(recording.presses.swap_remove(0))
 }
 
-/// Readings are the pressures at the ports. What is deeper than the gel could be pressed counts as unusable.
+/// A press with the pressures at the ports as readings. Frames deeper than the gel could be solved
+/// are marked as invalid.
 fn at_ports(inputs: &Inputs, source: &dyn DepthTableSource, plan: &PressPlan) -> Result<Press, WorkError> {
     let sensor = inputs.gel.sensor();
     let n_taxels = sensor.taxels.len();
@@ -83,7 +84,8 @@ fn at_ports(inputs: &Inputs, source: &dyn DepthTableSource, plan: &PressPlan) ->
     Ok(press)
 }
 
-/// Readings are those of a sensor that was drawn for this press, of the number `sensor.1`.
+/// A press with the readings of an imperfect sensor that is drawn for this press, with the number
+/// `sensor.1`.
 fn by_imperfect_sensor(
     inputs: &Inputs,
     (fast, twin): (&FastTables, Option<&Model>),

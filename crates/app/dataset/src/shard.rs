@@ -1,4 +1,4 @@
-//! Which part of a data set.
+//! A part of a data set.
 
 use std::fmt::{Display, Formatter};
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use twintac_work::WorkError;
 
-/// One of so many parts of a data set, counted from 1: `3/64`.
+/// One of several parts of a data set, counted from 1: `3/64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shard {
     number: u32,
@@ -14,7 +14,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The shard of a number, of so many.
+    /// Shard `number` of `of`.
     ///
     /// # Errors
     /// A number that is not from 1 to `of`.
@@ -33,13 +33,13 @@ impl Shard {
         self.number
     }
 
-    /// How many there are.
+    /// The number of shards.
     #[must_use]
     pub fn of(self) -> u32 {
         self.of
     }
 
-    /// Where its presses are among all.
+    /// The range of its presses among all presses of the data set.
     pub(super) fn stretch(self, n_presses: usize) -> Result<Range<usize>, WorkError> {
         let of = self.of as usize;
         if of > n_presses {
@@ -51,12 +51,12 @@ impl Shard {
         Ok(edge(self.number - 1)..edge(self.number))
     }
 
-    /// What its files are called, but for their ends.
+    /// The name of its files without extension.
     pub(super) fn stem(self) -> String {
         format!("shard-{:06}-of-{:06}", self.number, self.of)
     }
 
-    /// The shard whose manifest a file's name is.
+    /// The shard with a manifest of this file name.
     pub(super) fn of_manifest(name: &str) -> Option<Self> {
         let (number, of) = name
             .strip_prefix("shard-")?
@@ -74,7 +74,7 @@ impl FromStr for Shard {
         match parts.map(|(number, of)| (number.parse(), of.parse())) {
             Some((Ok(number), Ok(of))) => Self::new(number, of),
             _ => Err(WorkError::Input(format!(
-                "`{text}` is no shard: give its number and how many there are, such as 3/64"
+                "`{text}` is not a shard: give its number and how many there are, such as 3/64"
             ))),
         }
     }
@@ -110,7 +110,7 @@ mod tests {
             ("0/4", "the first of 4 shards is 1/4"),
             ("5/4", "the last 4/4"),
             ("3", "3/64"),
-            ("a/b", "`a/b` is no shard"),
+            ("a/b", "`a/b` is not a shard"),
         ] {
             let error = text.parse::<Shard>().unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");

@@ -1,4 +1,5 @@
-//! Data sets: the same rows however they are divided, nothing made twice, nothing half there, nothing mixed.
+//! Tests of data sets: all divisions have the same rows, complete shards are not made again, no
+//! shard is left half-written, and shards of different data sets are not mixed.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -9,7 +10,7 @@ use twintac_dataset::{Dataset, DatasetPlan, FastSource, MadeShard, Shard, check_
 use twintac_recording::{Provenance, Recording};
 use twintac_work::Silent;
 
-/// As coarse as will go.
+/// Settings of the coarsest mesh that still works.
 const COARSE: &str =
     "[simulate]\nedges_per_height = 2.0\nedges_per_contact_radius = 1.0\ndepth_step_mm = 0.5\n";
 
@@ -28,7 +29,7 @@ fn make(plan: &DatasetPlan, shard: &str, folder: &Path) -> Result<MadeShard, Str
     made.map_err(|error| error.to_string())
 }
 
-/// All shards of a division, last one first, merged.
+/// The merged data set, after all shards of a division were made, the last one first.
 fn merged(plan: &DatasetPlan, of: u32, n_threads: usize) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let pool = rayon::ThreadPoolBuilder::new()
@@ -122,7 +123,7 @@ fn what_is_complete_is_kept_and_what_was_altered_is_found_and_made_again() {
         fs::write(&first.parquet, altered).unwrap();
         let text = check_dataset(folder.path(), &Silent).unwrap_err().to_string();
         assert!(
-            text.contains("altered or cut") && text.contains("--shard 1/2"),
+            text.contains("altered or truncated") && text.contains("--shard 1/2"),
             "{text}"
         );
     }
@@ -131,7 +132,7 @@ fn what_is_complete_is_kept_and_what_was_altered_is_found_and_made_again() {
 
     fs::write(&first.manifest_file, b"{").unwrap();
     let text = check_dataset(folder.path(), &Silent).unwrap_err().to_string();
-    assert!(text.contains("no whole manifest"), "{text}");
+    assert!(text.contains("not a complete manifest"), "{text}");
     assert!(!make(&fast(8), "1/2", folder.path()).unwrap().was_kept);
     fs::remove_file(&first.parquet).unwrap();
     let text = check_dataset(folder.path(), &Silent).unwrap_err().to_string();
@@ -163,7 +164,7 @@ fn nothing_is_mixed() {
     let text = check_dataset(&folder.path().join("none"), &Silent)
         .unwrap_err()
         .to_string();
-    assert!(text.contains("is no data set"), "{text}");
+    assert!(text.contains("is not a data set"), "{text}");
     let other = tempfile::tempdir().unwrap();
     let plan = DatasetPlan { seed: 4, ..fast(8) };
     let stray = make(&plan, "2/2", other.path()).unwrap();

@@ -1,4 +1,4 @@
-//! A description with other numbers.
+//! Descriptions with changed numbers.
 
 use std::path::Path;
 
@@ -8,14 +8,15 @@ use twintac_work::WorkError;
 
 use crate::Variable;
 
-/// The gel's height: of a block its size along z.
+/// The gel's height. For a block it is the size along z.
 const HEIGHT: &str = "gel.height_mm";
-/// The smallest distance between two ports, seen from above. All ports move with it, and the sides of a block as far as the outermost ports do.
+/// The smallest distance between two ports, seen from above. All ports move in proportion, and the
+/// sides of a block move as far as the outermost ports.
 const PITCH: &str = "taxels.pitch_mm";
 
 const MATERIAL: &str = "gel.material.";
 
-/// The same sensor with other numbers, one for each variable.
+/// The description of the sensor with a new value for each variable.
 pub(crate) fn described(
     sensor: &SensorFile,
     name: &str,
@@ -35,7 +36,7 @@ pub(crate) fn described(
         .iter()
         .any(|variable| variable.field.starts_with(MATERIAL))
     {
-        // Where its numbers came from no longer holds.
+        // The stated source of the material's constants no longer applies.
         set_source(&mut table);
     }
     let path = sensor.path();
@@ -66,7 +67,7 @@ fn set_source(table: &mut Table) {
     {
         material.insert(
             "source".to_owned(),
-            "designed: a silicone of these numbers is yet to be found".into(),
+            "designed: no silicone with these constants was chosen yet".into(),
         );
     }
 }
@@ -74,7 +75,7 @@ fn set_source(table: &mut Table) {
 fn set_height(table: &mut Table, height_mm: f64) -> Result<(), WorkError> {
     let size = block(table).ok_or_else(|| {
         WorkError::Input(format!(
-            "`{HEIGHT}` is the height of a block, and this gel is none: vary the numbers of its own shape below `gel.solid`"
+            "`{HEIGHT}` is the height of a block, but this gel is not a block: vary the numbers of its shape below `gel.solid`"
         ))
     })?;
     size[2] = height_mm.into();
@@ -100,7 +101,7 @@ fn set_pitch(table: &mut Table, pitch_mm: f64) -> Result<(), WorkError> {
         .map(|port| [0, 1].map(|axis| number(&port[axis])))
         .collect();
     let pitch_before_mm = pitch(&places)
-        .ok_or_else(|| WorkError::Input(format!("`{PITCH}` needs two ports at different places")))?;
+        .ok_or_else(|| WorkError::Input(format!("`{PITCH}` needs two ports at different positions")))?;
     let extents = [0, 1].map(|axis| {
         let along = || places.iter().map(|place| place[axis]);
         [
@@ -126,12 +127,12 @@ fn set_pitch(table: &mut Table, pitch_mm: f64) -> Result<(), WorkError> {
     Ok(())
 }
 
-/// A length in mm as a description is written, without the last digits of a sum.
+/// A length in mm, rounded to a nanometre to remove rounding errors of sums.
 fn to_a_nanometre(length_mm: f64) -> f64 {
     (length_mm * 1e6).round() / 1e6
 }
 
-/// The smallest distance between two places, mm.
+/// The smallest distance between two ports, mm.
 pub(crate) fn pitch(places: &[[f64; 2]]) -> Option<f64> {
     let pairs = places.iter().enumerate();
     pairs
@@ -160,7 +161,7 @@ fn number(value: &Value) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// Sets a number that the description has.
+/// Sets a number that the description contains.
 fn set(table: &mut Table, field: &str, value: f64) -> Result<(), WorkError> {
     let mut all = Vec::new();
     for (name, inner) in table.iter() {
@@ -181,12 +182,12 @@ fn set(table: &mut Table, field: &str, value: f64) -> Result<(), WorkError> {
     all.dedup();
     all.extend([HEIGHT.to_owned(), PITCH.to_owned()]);
     Err(WorkError::Input(format!(
-        "`{field}` is no number of the description; it has {}",
+        "`{field}` is not a number of the description; it has {}",
         all.join(", ")
     )))
 }
 
-/// How many numbers were set.
+/// Sets all numbers at a path below `value`, and returns how many were set.
 fn set_below(value: &mut Value, steps: &[&str], number: f64) -> usize {
     let Some((first, rest)) = steps.split_first() else {
         let is_number = value.is_float() || value.is_integer();
@@ -212,7 +213,7 @@ fn set_below(value: &mut Value, steps: &[&str], number: f64) -> usize {
     }
 }
 
-/// The paths of all numbers; those of arrays of tables without index.
+/// The paths of all numbers. Arrays of tables appear without index.
 fn numbers(value: &Value, path: &str, found: &mut Vec<String>) {
     match value {
         Value::Float(_) | Value::Integer(_) => found.push(path.to_owned()),

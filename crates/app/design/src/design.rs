@@ -1,4 +1,4 @@
-//! Designs with what they do, as tables.
+//! Designs with their figures, as tables.
 
 use serde::Serialize;
 use twintac_work::WorkError;
@@ -13,13 +13,13 @@ pub struct Design {
     pub number: usize,
     /// The values of the variables.
     pub values: Vec<f64>,
-    /// What it does.
+    /// The figures, or why there are none.
     #[serde(flatten)]
     pub(crate) outcome: Outcome,
 }
 
 impl Design {
-    /// What it does; `None` where it cannot be judged.
+    /// The figures; `None` if the design could not be evaluated.
     #[must_use]
     pub fn figures(&self) -> Option<&Figures> {
         match &self.outcome {
@@ -28,7 +28,7 @@ impl Design {
         }
     }
 
-    /// Why it cannot be judged; `None` where it can.
+    /// Why the design could not be evaluated; `None` if it was.
     #[must_use]
     pub fn refused(&self) -> Option<&str> {
         match &self.outcome {
@@ -43,27 +43,28 @@ impl Design {
 pub struct Designs {
     /// The sensor that was varied.
     pub sensor: String,
-    /// Where the figures come from: `simulated`.
+    /// Provenance of the figures: `simulated`.
     pub provenance: &'static str,
     /// How they were measured.
     pub measure: Measure,
-    /// Standard deviation of a reading that was taken, kPa.
+    /// Standard deviation of a reading that was assumed, kPa.
     pub noise_kpa: f64,
-    /// What was varied.
+    /// The fields that were varied.
     pub fields: Vec<String>,
-    /// The designs in order of their numbers.
+    /// The designs, in order of their numbers.
     pub designs: Vec<Design>,
 }
 
 impl Designs {
-    /// The designs that can be judged.
+    /// The designs that could be evaluated.
     pub fn judged(&self) -> impl Iterator<Item = (&Design, &Figures)> {
         self.designs
             .iter()
             .filter_map(|design| Some((design, design.figures()?)))
     }
 
-    /// Numbers of the designs that no other beats in all goals.
+    /// Numbers of the designs on the Pareto front: no other design is at least as good in all goals
+    /// and better in one.
     #[must_use]
     pub fn front(&self, wishes: &Wishes) -> Vec<usize> {
         let (designs, figures): (Vec<&Design>, Vec<&Figures>) = self.judged().unzip();
@@ -74,7 +75,8 @@ impl Designs {
             .collect()
     }
 
-    /// The number of the design that is best of those with all that is needed: the one whose worst goal is best, each goal counted from 0, the best of these designs, to 1, the worst.
+    /// The number of the best design of those that meet all needs: its worst goal is the best, with
+    /// each goal scaled from 0 (best of these designs) to 1 (worst).
     #[must_use]
     pub fn best(&self, wishes: &Wishes) -> Option<usize> {
         let fit = self.judged().filter(|(_, figures)| wishes.are_met(figures));
@@ -82,7 +84,7 @@ impl Designs {
         wishes.best(&figures).map(|index| designs[index].number)
     }
 
-    /// The table of all designs, a row each.
+    /// The table of all designs, one row each.
     pub(crate) fn csv(&self, wishes: &Wishes) -> Result<Vec<u8>, WorkError> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let wrong = |found: csv::Error| WorkError::Input(format!("the table of designs: {found}"));

@@ -1,21 +1,21 @@
-//! What a sensor of a design does, figure by figure.
+//! The figures of a design.
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// What ends a design's range.
+/// What limits a design's range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RangeEnd {
-    /// The pressed taxel reads the most that its chip can.
+    /// The pressed taxel reads the largest value of its chip.
     Saturation,
     /// The description's limit of force.
     Force,
     /// The description's limit of depth, or half of the gel's height.
     Depth,
-    /// The gel's equilibrium is not found beyond: the sensor's range may be larger.
+    /// The solver finds no equilibrium beyond this force: the true range may be larger.
     Solver,
 }
 
@@ -30,33 +30,41 @@ impl fmt::Display for RangeEnd {
     }
 }
 
-/// What a sensor of a design does, simulated, pressed by a ball. "At the force" is the force of [`Measure`](crate::Measure). The pressed taxel is the one nearest to the middle of all ports;
-/// "between" is the place as far as possible from it and its next neighbours.
+/// The simulated figures of a design, pressed by a ball. "At the force" means at the force of
+/// [`Measure`](crate::Measure). The pressed taxel is the one nearest to the middle of all ports.
+/// "Between" is the location farthest from the pressed taxel and its next neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
-    /// Reading of the pressed taxel over the force, at the force, kPa/N.
+    /// Reading of the pressed taxel divided by the force, at the force, kPa/N.
     pub sensitivity_kpa_per_n: f64,
-    /// The same of the taxel that reads most, pressed between taxels, kPa/N. `None` of one taxel alone.
+    /// The same for the taxel that reads most, when pressed between taxels, kPa/N. `None` for a
+    /// sensor of one taxel.
     pub sensitivity_between_kpa_per_n: Option<f64>,
-    /// How deep the ball is at the force, mm.
+    /// Depth of the ball at the force, mm.
     pub depth_mm: f64,
-    /// Largest force that is read and stood, above the pressed taxel, N.
+    /// Largest force above the pressed taxel that the chip can read and the limits allow, N.
     pub range_n: f64,
-    /// What ends the range.
+    /// What limits the range.
     pub range_end: RangeEnd,
-    /// Largest reading of another taxel over that of the pressed one, at the force, %. `None` of one taxel alone.
+    /// Cross-talk: largest reading of another taxel divided by that of the pressed one, at the
+    /// force, %. `None` for a sensor of one taxel.
     pub cross_talk_percent: Option<f64>,
-    /// How far off a place found from one frame is, root mean square: the bound of Cramér and Rao for unknown place and depth and noise of the readings, at the force, the worse of above a
-    /// taxel and between, mm. Of taxels in one row along the row alone. `None` where no place can be found.
+    /// Error of a location found from one frame, root mean square, mm: the Cramér–Rao bound for
+    /// unknown location and depth with noise of the readings, at the force; the larger of the
+    /// values above a taxel and between taxels. For taxels in one row it is the error along the
+    /// row. `None` if the readings do not determine a location.
     pub localization_error_mm: Option<f64>,
-    /// Largest difference of the pressed taxel's readings between way down and way up at the same force over the largest, of a press to the depth at the force at 1 mm/s, %.
-    /// `None` where the description's material does not relax: it says nothing then.
+    /// Hysteresis: largest difference of the pressed taxel's readings between way down and way up
+    /// at the same force, divided by the largest reading, for a press to the depth at the force at
+    /// 1 mm/s, %. `None` if the description's material does not relax: the simulation then says
+    /// nothing about hysteresis.
     pub hysteresis_percent: Option<f64>,
-    /// Force at which some taxel reads three times its noise, pressed between taxels, N.
+    /// Smallest force at which some taxel reads three times its noise, when pressed between taxels,
+    /// N.
     pub smallest_force_n: f64,
 }
 
-/// One of the figures, by name.
+/// The name of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Figure {
@@ -88,7 +96,7 @@ impl Figure {
         Self::SmallestForceN,
     ];
 
-    /// Its name, as in tables: with its unit.
+    /// Its name in tables, with its unit.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -102,7 +110,7 @@ impl Figure {
         }
     }
 
-    /// Its name with the unit as on axes.
+    /// Its label on axes, with its unit.
     pub(crate) fn label(self) -> &'static str {
         match self {
             Self::SensitivityKpaPerN => "sensitivity above a taxel, kPa/N",
@@ -115,7 +123,7 @@ impl Figure {
         }
     }
 
-    /// Whether more of it is better.
+    /// Whether larger values are better.
     pub(crate) fn is_better_larger(self) -> bool {
         matches!(
             self,
@@ -123,7 +131,7 @@ impl Figure {
         )
     }
 
-    /// Its value, if the design has it.
+    /// Its value, if the design has one.
     #[must_use]
     pub fn of(self, figures: &Figures) -> Option<f64> {
         match self {
@@ -137,7 +145,7 @@ impl Figure {
         }
     }
 
-    /// Its value, turned so that less is better; what is not there is infinitely bad.
+    /// Its value with a sign such that smaller is better. A missing value is infinite.
     pub(crate) fn badness(self, figures: &Figures) -> f64 {
         match self.of(figures) {
             Some(value) if self.is_better_larger() => -value,
@@ -156,7 +164,7 @@ impl FromStr for Figure {
             .find(|figure| figure.name() == text)
             .ok_or_else(|| {
                 let names = Self::ALL.map(Self::name).join(", ");
-                format!("`{text}` is no figure of a design; there are {names}")
+                format!("`{text}` is not a figure of a design; there are {names}")
             })
     }
 }

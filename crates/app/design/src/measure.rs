@@ -8,11 +8,12 @@ use twintac_work::WorkError;
 /// How designs are measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measure {
-    /// The force at which figures hold that depend on force, N.
+    /// The force at which the figures hold that depend on force, N.
     pub force_n: f64,
     /// Radius of the ball that presses, mm.
     pub ball_radius_mm: f64,
-    /// Standard deviation of a single reading of an untouched taxel, kPa. `None`: that of the sensor's chip by its data sheet, or the readings' resolution if that is larger.
+    /// Standard deviation of a single reading of an untouched taxel, kPa. `None`: the value of the
+    /// chip's data sheet, or the readings' resolution if that is larger.
     pub noise_kpa: Option<f64>,
     /// Most nodes of the gel's mesh.
     pub max_nodes: usize,
@@ -57,7 +58,7 @@ impl Measure {
     }
 }
 
-/// What the data sheet of a chip says, kPa.
+/// The noise of a chip by its data sheet, kPa.
 fn chip_noise_kpa(chip: Option<&str>, samples: Option<u16>) -> Option<f64> {
     let chip = Chip::named(chip?)?.data();
     let samples = samples.or(chip.usual_samples)?;

@@ -1,4 +1,4 @@
-//! Which values are tried.
+//! The values that are tried.
 
 use rand::Rng;
 use rand::seq::SliceRandom;
@@ -6,25 +6,26 @@ use twintac_random::stream;
 
 use crate::Variable;
 
-/// How the values of designs are chosen between the bounds of the variables.
+/// How the values of the designs are chosen within the bounds of the variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plan {
-    /// So many designs, by a Latin hypercube: as many equal parts of each variable's range have one value each (McKay, Beckman and Conover, 1979).
+    /// A Latin hypercube: each variable's range is divided into as many equal parts as there are
+    /// designs, and each part has one value (McKay, Beckman and Conover, 1979).
     LatinHypercube {
-        /// Designs.
+        /// Number of designs.
         n_designs: usize,
-        /// Seed of all chance.
+        /// Seed of all random choices.
         seed: u64,
     },
-    /// All combinations of so many evenly spaced values of each variable, bounds included.
+    /// All combinations of evenly spaced values of each variable, bounds included.
     Grid {
-        /// Values of each variable.
+        /// Number of values of each variable.
         n_values: usize,
     },
 }
 
 impl Plan {
-    /// How many designs there are, unless that is beyond all counting.
+    /// The number of designs; `None` if it is too large for the type.
     #[must_use]
     pub fn n_designs(&self, n_variables: usize) -> Option<usize> {
         match *self {
@@ -33,7 +34,7 @@ impl Plan {
         }
     }
 
-    /// The values of each design, with four digits; `[n_designs][n_variables]`.
+    /// The values of each design, rounded to four digits; `[n_designs][n_variables]`.
     pub(crate) fn values(&self, variables: &[Variable]) -> Vec<Vec<f64>> {
         let place = |variable: &Variable, part: f64| {
             let [low, high] = variable.bounds;
@@ -78,7 +79,7 @@ impl Plan {
     }
 }
 
-/// A number with as many digits as people write.
+/// A number, rounded to four significant digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

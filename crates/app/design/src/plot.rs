@@ -4,7 +4,8 @@ use twintac_plot::{Scatter, ScatterPoint};
 
 use crate::{Designs, Figure, Wishes};
 
-/// The plot of all designs that could be judged; a goal that is not there is the first one.
+/// The plot of all designs that could be evaluated. If there are fewer than three goals, the first
+/// one is used again.
 pub(crate) fn plot(designs: &Designs, wishes: &Wishes) -> Scatter {
     let goal = |index: usize| wishes.goals.get(index).or(wishes.goals.first()).copied();
     let [x, y, color] = [0, 1, 2].map(|index| goal(index).unwrap_or(Figure::RangeN));
@@ -22,7 +23,7 @@ pub(crate) fn plot(designs: &Designs, wishes: &Wishes) -> Scatter {
     });
     Scatter {
         title: format!(
-            "{}: {} designs, simulated; ringed: no other is better in every goal",
+            "{}: {} designs, simulated; ringed: Pareto-optimal",
             designs.sensor,
             designs.designs.len()
         ),

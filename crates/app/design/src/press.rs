@@ -1,4 +1,4 @@
-//! A design's gel, pressed: its figures.
+//! Presses a design's gel, and computes its figures.
 
 use glam::{DQuat, DVec2};
 use serde::{Deserialize, Serialize};
@@ -12,38 +12,38 @@ use twintac_work::{WorkError, in_one_sentence};
 
 use crate::{Figures, Measure, RangeEnd};
 
-/// Part of the gel's height to which it is pressed at most.
+/// Largest depth as a fraction of the gel's height.
 const DEEPEST: f64 = 0.5;
 
-/// How far apart places are whose readings are compared, mm.
+/// Step of the finite differences of readings with respect to the location, mm.
 const ASIDE_MM: f64 = 0.5;
 
-/// Pressure of the air, kPa: chips read absolute pressures.
+/// Pressure of the air, kPa. Chips read absolute pressures.
 const AIR_KPA: f64 = 101.325;
 
-/// Readings over their noise that count as felt.
+/// A reading counts as detected above this many times its noise.
 const FELT: f64 = 3.0;
 
-/// Speed of the press that hysteresis is read from, mm/s, and the frames of each of its ways.
+/// Speed of the press for hysteresis, mm/s, and number of frames down and up.
 const SPEED_MM_PER_S: f64 = 1.0;
 const FRAMES_OF_A_WAY: u32 = 12;
 
-/// The figures of one gel: all that they depend on.
+/// The inputs of one gel's figures.
 #[derive(Serialize)]
 pub(crate) struct Pressed<'a> {
-    /// A name for the file.
+    /// A name for the file of the result.
     pub(crate) name: &'a str,
     pub(crate) gel: Keyed<Gel>,
     pub(crate) measure: &'a Measure,
 }
 
-/// The figures of a gel, or why it has none.
+/// The figures of a gel, or why there are none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Outcome {
-    /// What it does.
+    /// The figures.
     Figures(Figures),
-    /// Why it cannot be judged.
+    /// Why the design could not be evaluated.
     Refused(String),
 }
 
@@ -60,20 +60,20 @@ impl Recipe for Pressed<'_> {
     }
 }
 
-/// Where a sensor is pressed.
+/// The locations at which a sensor is pressed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Places {
     /// The pressed taxel.
     taxel: usize,
     above: DVec2,
-    /// As far as can be from it and its next neighbours.
+    /// The location farthest from the pressed taxel and its next neighbours.
     between: Option<DVec2>,
-    /// Directions in which a place can be found: one along a row of taxels, else two.
+    /// Directions in which a location can be found: one along a row of taxels, else two.
     directions: [Option<DVec2>; 2],
 }
 
 impl Places {
-    /// The places of a sensor with at least one taxel.
+    /// The locations for a sensor with at least one taxel.
     fn of(sensor: &Sensor) -> Self {
         let ports: Vec<DVec2> = sensor
             .taxels
@@ -81,7 +81,7 @@ impl Places {
             .map(|taxel| taxel.position_mm.truncate())
             .collect();
         let middle = ports.iter().sum::<DVec2>() / ports.len() as f64;
-        // In steps, so that what is as far but for rounding is in order.
+        // Distances are rounded, so that equal ones keep their order despite rounding errors.
         let step = |mm: f64| (1e6 * mm).round();
         let nearest = ports
             .iter()
@@ -205,7 +205,7 @@ impl Pressed<'_> {
         DepthCurves::new(table, self.gel.sensor().taxels.len()).map_err(|error| in_one_sentence(&error))
     }
 
-    /// Nothing, if the force of the figures is in a table.
+    /// `Ok` if the table reaches the force of the figures.
     fn is_reached(&self, curves: &DepthCurves, failure: Option<&str>) -> Result<(), String> {
         let force_n = self.measure.force_n;
         if curves.max_force_n() >= force_n {
@@ -219,7 +219,7 @@ impl Pressed<'_> {
         ))
     }
 
-    /// The largest force that is read and stood.
+    /// The largest force that the chip can read and the limits allow, N, and what limits it.
     fn range(&self, table: &DepthTable, curves: &DepthCurves, taxel: usize) -> (f64, RangeEnd) {
         let sensor = self.gel.sensor();
         let most_kpa = sensor.readout.max_kpa - AIR_KPA;
@@ -248,7 +248,8 @@ impl Pressed<'_> {
         }
     }
 
-    /// How far off a place is that is found from one frame: the bound of Cramér and Rao for unknown place and depth.
+    /// Error of a location found from one frame: the Cramér–Rao bound for unknown location and
+    /// depth.
     fn localization_error_mm(
         &self,
         places: &Places,
@@ -275,7 +276,8 @@ impl Pressed<'_> {
         }))
     }
 
-    /// How far readings on the way up are from those on the way down.
+    /// Largest difference between readings on the way up and on the way down, % of the largest
+    /// reading.
     fn hysteresis_percent(&self, places: &Places, depth_mm: f64) -> Result<Option<f64>, String> {
         if self.gel.material().prony.is_empty() {
             return Ok(None);
@@ -313,10 +315,10 @@ impl Pressed<'_> {
     }
 }
 
-/// Part of a depth by which it is changed for a rate.
+/// Step of the finite difference with respect to depth, as a fraction of the depth.
 const DEPTH_STEP: f64 = 0.05;
 
-/// How readings change over a step.
+/// The finite difference of readings.
 fn rate(before: &[f64], after: &[f64], step: f64) -> Vec<f64> {
     before
         .iter()
@@ -325,10 +327,12 @@ fn rate(before: &[f64], after: &[f64], step: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The covariance of unknowns that readings tell, from the rates of all readings with each of them: σ² (Jᵀ J)⁻¹. `None` where they do not tell them.
+/// The covariance of the unknowns, from the derivatives of all readings with respect to each of
+/// them: σ² (Jᵀ J)⁻¹. `None` if the readings do not determine them.
 fn covariance(rates: &[Vec<f64>], noise_kpa: f64) -> Option<Vec<f64>> {
     let n = rates.len();
-    // Each unknown in units of its own, so that what cannot be told is seen.
+    // Each unknown is scaled by its own effect, so that an undetermined one shows as a large
+    // inverse.
     let norms: Vec<f64> = rates.iter().map(|rate| dot(rate, rate).sqrt()).collect();
     if !norms.iter().all(|norm| *norm > 0.0) {
         return None;
@@ -347,14 +351,15 @@ fn covariance(rates: &[Vec<f64>], noise_kpa: f64) -> Option<Vec<f64>> {
     })
 }
 
-/// Inverse of the smallest part of an unknown's effect that others do not have as well.
+/// Largest value on the diagonal of the scaled inverse; beyond it an unknown's effect is too much
+/// like that of the others.
 const LEAST_TOLD: f64 = 1e8;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The value of a polyline at a place along its first coordinate, which rises.
+/// The value of a polyline at a point of its first coordinate, which increases.
 fn between(points: &[[f64; 2]], at: f64) -> Option<f64> {
     points
         .windows(2)
@@ -365,7 +370,7 @@ fn between(points: &[[f64; 2]], at: f64) -> Option<f64> {
         })
 }
 
-/// The force at which some taxel reads as much as counts as felt, N.
+/// The smallest force at which some taxel's reading is detected, N.
 fn smallest_force_n(curves: &DepthCurves, noise_kpa: f64) -> Option<f64> {
     let is_felt = |depth_mm: f64| {
         curves

@@ -1,4 +1,4 @@
-//! The search: each design described, pressed and judged.
+//! The search: each design is described, pressed and evaluated.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -19,11 +19,14 @@ use crate::{Design, Designs, Measure, Plan, Variable, Wishes};
 /// Most designs of a search.
 const MOST_DESIGNS: usize = 100_000;
 
-/// Presses the gels of all designs, and writes into the folder `designs.csv`, `designs.json`, `designs.png`, and `best.toml`, the description of the best if one is as good as it needs to be. Designs that
-/// were judged are kept in the folder: a killed search goes on.
+/// Presses the gels of all designs, and writes into the folder `designs.csv`, `designs.json`,
+/// `designs.png`, and, if a design meets all needs, `best.toml`, the description of the best one.
+/// Results are kept in the folder, so a search that was killed continues.
 ///
 /// # Errors
-/// Variables that the description does not have, or twice; a plan without designs, or with more than 100,000; no design that can be judged; a folder that another program works in.
+/// Variables that the description does not have, or one that occurs twice; a plan without designs,
+/// or with more than 100,000; no design that can be evaluated; a folder in which another program
+/// works.
 pub fn search(
     sensor: &SensorFile,
     variables: &[Variable],
@@ -43,7 +46,7 @@ pub fn search(
     }
     let name = |number: usize| format!("{}-design-{number}", sensor.sensor.name);
     let all = plan.values(variables);
-    // Every description first: one with a number that cannot be is told before minutes of work.
+    // All descriptions are made first, so that a wrong number is reported before minutes of work.
     let mut described: Vec<Result<SensorFile, WorkError>> = (1..)
         .zip(&all)
         .map(|(number, values)| described(sensor, &name(number), variables, values))
@@ -91,7 +94,7 @@ pub fn search(
         designs.designs.iter().find_map(Design::refused),
     ) {
         return Err(WorkError::Input(format!(
-            "none of the {} designs can be judged; the first: {why}",
+            "none of the {} designs can be evaluated; the first: {why}",
             designs.designs.len()
         )));
     }
@@ -107,7 +110,7 @@ pub fn search(
     Ok(designs)
 }
 
-/// What a described sensor does, kept by all that it is made from.
+/// The figures of a described sensor, kept under all their inputs.
 fn judge(file: &SensorFile, measure: &Measure, store: &Store, caller: &Caller) -> Result<Outcome, WorkError> {
     let settings = SimulateSettings {
         max_nodes: measure.max_nodes,
@@ -124,7 +127,7 @@ fn judge(file: &SensorFile, measure: &Measure, store: &Store, caller: &Caller) -
     Ok(kept.value)
 }
 
-/// Writes the description of the best, with the surfaces that it names.
+/// Writes the description of the best design, with the surfaces that it names.
 fn write_best(best: &SensorFile, folder: &Path) -> Result<(), WorkError> {
     let path = folder.join("best.toml");
     let best = best.kept_as(&path)?;

@@ -1,12 +1,15 @@
-//! A number of a description that is varied, and between which bounds.
+//! A number of a description that is varied, with its bounds.
 
 use std::str::FromStr;
 
-/// A number of a description, and the bounds between which it is varied. As text: `gel.height_mm=4..10`.
+/// A number of a description, and the bounds between which it is varied. As text:
+/// `gel.height_mm=4..10`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// The number's path in the description, with array indices from 0, such as `gel.material.shear_modulus_kpa` or `gel.solid.size_mm[2]`. An array of tables without an index is
-    /// all of its tables: `taxels.port_radius_mm`. Two paths are no numbers of a description, but what people think in: `gel.height_mm` and `taxels.pitch_mm`.
+    /// The number's path in the description, with array indices from 0, such as
+    /// `gel.material.shear_modulus_kpa` or `gel.solid.size_mm[2]`. The path of an array of tables
+    /// without an index means all of its tables: `taxels.port_radius_mm`. Two paths are derived
+    /// quantities and not numbers of a description: `gel.height_mm` and `taxels.pitch_mm`.
     pub field: String,
     /// Smallest and largest value, in the unit of the field.
     pub bounds: [f64; 2],

@@ -1,11 +1,11 @@
-//! What is wanted of a design.
+//! What is wanted of a design: goals and needs.
 
 use crate::{Figure, Figures};
 
-/// What is wanted of a design.
+/// What is wanted of a design: goals and needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wishes {
-    /// Figures that should be as good as they can be. The first three are the axes and the colour of the plot.
+    /// Figures to optimize. The first three are the axes and the colour of the plot.
     pub goals: Vec<Figure>,
     /// Figures that have to be at least this good.
     pub needs: Vec<(Figure, f64)>,
@@ -25,7 +25,7 @@ impl Default for Wishes {
 }
 
 impl Wishes {
-    /// Whether a design has all that it has to.
+    /// Whether a design meets all needs.
     pub(crate) fn are_met(&self, figures: &Figures) -> bool {
         self.needs.iter().all(|(figure, needed)| {
             figure.of(figures).is_some_and(|value| {
@@ -38,7 +38,8 @@ impl Wishes {
         })
     }
 
-    /// Which of these designs no other beats: none is at least as good in every goal, and better in one. Indices, in order.
+    /// Indices of the designs on the Pareto front, in order: no other design is at least as good in
+    /// every goal and better in one.
     pub(crate) fn front(&self, designs: &[&Figures]) -> Vec<usize> {
         let bad =
             |design: &Figures| -> Vec<f64> { self.goals.iter().map(|goal| goal.badness(design)).collect() };
@@ -51,7 +52,8 @@ impl Wishes {
             .collect()
     }
 
-    /// The best of these designs: the one whose worst goal is best, each goal counted from 0, the best of all, to 1, the worst. Of equals the first.
+    /// The best of these designs: its worst goal is the best, with each goal scaled from 0 (best of
+    /// all) to 1 (worst). Of equal designs the first.
     pub(crate) fn best(&self, designs: &[&Figures]) -> Option<usize> {
         let ranges: Vec<[f64; 2]> = self
             .goals
@@ -110,10 +112,10 @@ mod tests {
     fn what_another_beats_is_not_on_the_front() {
         let designs = [
             design(10.0, 0.1, Some(0.1)),
-            design(9.0, 0.2, Some(0.2)),  // beaten by the first
-            design(20.0, 0.3, Some(0.1)), // more range
-            design(5.0, 0.05, None),      // finer, but finds no place
-            design(10.0, 0.1, Some(0.1)), // like the first
+            design(9.0, 0.2, Some(0.2)),  // dominated by the first
+            design(20.0, 0.3, Some(0.1)), // larger range
+            design(5.0, 0.05, None),      // smaller force, but no location
+            design(10.0, 0.1, Some(0.1)), // same goals as the first
         ];
         let designs: Vec<&Figures> = designs.iter().collect();
         assert_eq!(Wishes::default().front(&designs), [0, 2, 3, 4]);

@@ -1,4 +1,4 @@
-//! What is known of gels before any is pressed: how figures scale.
+//! Tests against known answers: how figures scale with height, modulus and force.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -87,8 +87,9 @@ fn measure() -> Measure {
     }
 }
 
-/// A small load on a layer: of all lengths, the layer's height alone matters (Boussinesq's 3 F / (2 π h²) is of that form), so the pressure below falls with its square. The ball's
-/// contact and the port are not points: they blunt that, most of thin layers.
+/// Under a small load on a layer, the layer's height is the only length that matters (Boussinesq's
+/// 3 F / (2 π h²) has that form), so the pressure below falls with its square. The ball's contact
+/// and the port have a finite size, which reduces the effect, most for thin layers.
 #[test]
 fn sensitivity_falls_with_the_square_of_the_height() {
     let folder = tempfile::tempdir().unwrap();
@@ -109,7 +110,8 @@ fn sensitivity_falls_with_the_square_of_the_height() {
         (1.8..2.05).contains(&power),
         "{thin} {thick}: to the power of {power}"
     );
-    // Boussinesq's half-space has no floor. A rigid one below a layer that hardly loses volume bears about half as much again in the middle.
+    // Boussinesq's half-space has no base. On a rigid base the middle of a nearly incompressible
+    // layer bears about half as much again.
     let boussinesq = 1000.0 * 3.0 / (2.0 * std::f64::consts::PI * 100.0);
     assert!(
         (1.25..1.75).contains(&(thick / boussinesq)),
@@ -117,7 +119,8 @@ fn sensitivity_falls_with_the_square_of_the_height() {
     );
 }
 
-/// A gel of another modulus under as many times the force is the same, but for the unit of pressure: exactly.
+/// A gel of another modulus, under a force scaled by the same factor, gives the same figures but
+/// for the unit of pressure, exactly.
 #[test]
 fn stiffer_gels_under_more_force_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -178,7 +181,7 @@ fn places_are_found_as_well_as_readings_are_quiet() {
     assert_eq!(noisy.sensitivity_kpa_per_n, quiet.sensitivity_kpa_per_n);
 }
 
-/// What a chip cannot read ends the range; what the description does not stand ends it before.
+/// The range ends where the chip saturates, or before that at the limits of the description.
 #[test]
 fn ranges_end_where_the_chip_or_the_limits_do() {
     let folder = tempfile::tempdir().unwrap();
@@ -216,7 +219,7 @@ fn ranges_end_where_the_chip_or_the_limits_do() {
     assert_eq!((found[1].range_n, found[1].range_end), (0.5, RangeEnd::Force));
 }
 
-/// A material that does not relax says nothing about hysteresis; one that does has some.
+/// A material that does not relax gives no hysteresis figure; one that relaxes gives one.
 #[test]
 fn hysteresis_is_of_materials_that_relax() {
     let folder = tempfile::tempdir().unwrap();
@@ -250,7 +253,7 @@ fn hysteresis_is_of_materials_that_relax() {
     assert!((0.5..60.0).contains(&percent), "{percent}");
 }
 
-/// The best design's description can be read, and has the numbers that the table says.
+/// The best design's description can be read and has the values of the table.
 #[test]
 fn the_best_is_written_as_a_description() {
     let folder = tempfile::tempdir().unwrap();

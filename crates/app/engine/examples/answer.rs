@@ -1,4 +1,5 @@
-//! Answers requests, one JSON text a line, with one JSON text a line: what the WebAssembly module answers is compared with this.
+//! Answers requests, one JSON text a line, with one JSON text a line. A test compares the answers
+//! of the WebAssembly module with these.
 
 use std::io::{BufRead, Write};
 

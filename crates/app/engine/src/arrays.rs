@@ -1,32 +1,33 @@
-//! What a page draws, as flat numbers that it reads where they lie.
+//! What a page draws, as flat arrays that it can read in place.
 
 use glam::DVec3;
 
-/// One of the arrays, by the number that a page asks for it with.
+/// One of the arrays. Its number is the one that a page asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Array {
-    /// Corners of the triangles of the gel's surface; `[n_triangles, 3]`, whole numbers.
+    /// Node indices of the triangles of the gel's surface; `[n_triangles, 3]`, integers.
     SurfaceTriangles,
-    /// Corners of the tetrahedra; `[n_tets, 4]`, whole numbers.
+    /// Node indices of the tetrahedra; `[n_tets, 4]`, integers.
     Tets,
-    /// Nodes of the gel at rest, mm; `[n_nodes, 3]`.
+    /// Positions of the nodes of the gel at rest, mm; `[n_nodes, 3]`.
     RestMm,
-    /// How far the nodes have moved, mm; `[n_nodes, 3]`.
+    /// Displacements of the nodes, mm; `[n_nodes, 3]`.
     DisplacementsMm,
     /// Hydrostatic pressure at the nodes, kPa; `[n_nodes]`.
     PressureKpa,
     /// Von Mises stress at the nodes, kPa; `[n_nodes]`.
     VonMisesKpa,
-    /// The pressure map: readings of the taxels interpolated over the gel, kPa; `[64, 64]`, rows from the lowest y on. None where taxels allow no map.
+    /// The pressure map: readings of the taxels interpolated over the gel, kPa; `[64, 64]`, rows
+    /// from the lowest y upwards. Empty if the positions of the taxels allow no map.
     MapKpa,
     /// Corners of the indenter's surface in its own frame, mm; `[n_corners, 3]`.
     OutlineMm,
     /// Outward normals there; `[n_corners, 3]`.
     OutlineNormals,
-    /// Corners of the triangles of the indenter's surface; `[n_triangles, 3]`, whole numbers.
+    /// Corner indices of the triangles of the indenter's surface; `[n_triangles, 3]`, integers.
     OutlineTriangles,
-    /// The pressure map of the sensor on the desk, as that of its twin. None where a taxel reads nothing.
+    /// The pressure map of the connected sensor, in the same form. Empty if a taxel has no reading.
     DeskMapKpa,
 }
 
@@ -47,7 +48,7 @@ impl Array {
     ];
 }
 
-/// The arrays as they are after the last request. Whole numbers have four bytes, as the others have.
+/// The arrays after the last request. Integers have four bytes, like the other numbers.
 #[derive(Default)]
 pub struct Arrays {
     indices: [Vec<u32>; 11],
@@ -56,19 +57,19 @@ pub struct Arrays {
 }
 
 impl Arrays {
-    /// Whole numbers of an array.
+    /// The integers of an array; empty for an array of other numbers.
     #[must_use]
     pub fn indices(&self, array: Array) -> &[u32] {
         &self.indices[array as usize]
     }
 
-    /// Numbers of an array.
+    /// The numbers of an array; empty for an array of integers.
     #[must_use]
     pub fn numbers(&self, array: Array) -> &[f32] {
         &self.numbers[array as usize]
     }
 
-    /// The arrays that were set since this was last asked.
+    /// The arrays that were set since the last call.
     pub(crate) fn take_new(&mut self) -> impl Iterator<Item = Array> {
         let is_new = std::mem::take(&mut self.is_new);
         Array::ALL

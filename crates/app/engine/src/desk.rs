@@ -1,4 +1,4 @@
-//! A sensor on the desk, beside its twin: what it reads, above what it read untouched.
+//! The connected sensor beside its twin: its readings, relative to its untouched state.
 
 use serde::Serialize;
 use twintac_line::{Decoder, Description, Heard};
@@ -8,14 +8,14 @@ use crate::arrays::{Array, Arrays};
 use crate::error::EngineError;
 use crate::map::Map;
 
-/// Frames that make a zero.
+/// Number of frames whose mean is the zero.
 const ZERO_FRAMES: u32 = 32;
 
-/// A sensor on the desk. Pressures that come are absolute, kPa.
+/// A connected sensor. Its incoming pressures are absolute, kPa.
 pub(crate) struct Desk {
     source: String,
     provenance: String,
-    /// Of what a page reads from a serial port by itself.
+    /// Decodes the bytes that a page reads from a serial port itself.
     decoder: Option<Decoder>,
     map: Option<Map>,
     zero: Zero,
@@ -24,7 +24,7 @@ pub(crate) struct Desk {
     remarks: Vec<String>,
 }
 
-/// What taxels read untouched: the mean of the first frames.
+/// The zero of each taxel: the mean of the first frames, in which nothing touches.
 #[derive(Default)]
 struct Zero {
     n_frames: u32,
@@ -32,23 +32,24 @@ struct Zero {
     sums: Vec<(f64, u32)>,
 }
 
-/// What a sensor reads.
+/// The state of the connected sensor.
 #[derive(Debug, Serialize)]
 pub(crate) struct DeskFrame {
     source: String,
     provenance: String,
-    /// Frames so far.
+    /// Number of frames so far.
     n_frames: u64,
-    /// Whether the zero is still being taken: nothing may touch the sensor meanwhile.
+    /// Whether the zero is still being measured. Nothing may touch the sensor meanwhile.
     is_zeroing: bool,
-    /// Above the zero, kPa: of the last frame, null of a taxel without a reading; empty before the first.
+    /// Pressures of the last frame above the zero, kPa; null for a taxel without a reading. Empty
+    /// while the zero is measured.
     pressure_kpa: Vec<Option<f64>>,
-    /// What was odd so far, a sentence each.
+    /// Remarks about the frames so far, one sentence each.
     remarks: Vec<String>,
 }
 
 impl Desk {
-    /// A sensor whose frames are handed over.
+    /// A sensor whose frames the surrounding program hands over.
     pub(crate) fn new(source: &str, provenance: &str) -> Self {
         Self {
             source: source.to_owned(),
@@ -62,7 +63,7 @@ impl Desk {
         }
     }
 
-    /// A sensor whose line is read byte by byte, as a description says.
+    /// A sensor whose line is decoded byte by byte, according to a description.
     pub(crate) fn on_line(description: &Description, sensor: &Sensor) -> Result<Self, EngineError> {
         let (n_taxels, n_pressures) = (sensor.taxels.len(), description.n_pressures());
         if n_taxels != n_pressures {
@@ -77,17 +78,17 @@ impl Desk {
         Ok(desk)
     }
 
-    /// Takes this sensor for the one on the desk.
+    /// Declares that the connected sensor is of this description.
     pub(crate) fn set_sensor(&mut self, sensor: &Sensor) {
         self.map = Map::of(sensor, Array::DeskMapKpa);
     }
 
-    /// Takes the next frames for untouched.
+    /// Starts measuring the zero again, from the next frames.
     pub(crate) fn take_zero(&mut self) {
         self.zero = Zero::default();
     }
 
-    /// Whether its frames come over a line, byte by byte.
+    /// Whether its frames come byte by byte over a line.
     pub(crate) fn has_line(&self) -> bool {
         self.decoder.is_some()
     }
@@ -115,7 +116,7 @@ impl Desk {
         self.last_kpa = pressures_kpa;
     }
 
-    /// Shows the map of the last frame, and says what that read.
+    /// Updates the map of the last frame, and returns the state.
     pub(crate) fn show(&mut self, sensor: &Sensor, arrays: &mut Arrays) -> Result<DeskFrame, EngineError> {
         let (n_taxels, n_pressures) = (sensor.taxels.len(), self.last_kpa.len());
         if self.n_frames > 0 && n_taxels != n_pressures {
@@ -130,7 +131,7 @@ impl Desk {
         } else {
             self.zero.above_kpa(&self.last_kpa)
         };
-        // A map over a taxel that reads nothing would be invented.
+        // Without the reading of every taxel there is no map: its values there would be invented.
         let all_kpa: Option<Vec<f64>> = pressure_kpa.iter().copied().collect();
         match (&mut self.map, all_kpa.filter(|kpa| !kpa.is_empty())) {
             (Some(map), Some(kpa)) => map.show(&kpa, arrays),
@@ -162,7 +163,7 @@ impl Zero {
         }
     }
 
-    /// Pressures above it; none of a taxel that reads nothing, or read nothing then.
+    /// Pressures above the zero; `None` for a taxel that has no reading now, or had none then.
     fn above_kpa(&self, pressures_kpa: &[Option<f64>]) -> Vec<Option<f64>> {
         let above = |(kpa, (sum_kpa, n)): (&Option<f64>, &(f64, u32))| {
             let zero_kpa = (*n > 0).then(|| sum_kpa / f64::from(*n))?;

@@ -1,4 +1,4 @@
-//! What answers requests.
+//! The engine that answers requests.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::press::Press;
 use crate::request::{Offer, Refused, Reply, Request};
 use crate::sensor_reply::SensorReply;
 
-/// A sensor's gel, and what a page has asked of it so far.
+/// The state of a page: its sensor, the pressed gel, stored files, and the connected sensor.
 #[derive(Default)]
 pub struct Engine {
     files: Files,
@@ -26,8 +26,9 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Answers a request, a JSON text, with a JSON text. `bytes` is the file that a request keeps, or what came over a line. Where something is wrong, the answer is
-    /// `{"error": "…"}`, and the engine is as it was.
+    /// Answers a request, a JSON text, with a JSON text. `bytes` is the file that the request
+    /// stores, or what came over a line. If something is wrong, the answer is `{"error": "…"}`, and
+    /// the engine stays as it was.
     pub fn answer(&mut self, request: &str, bytes: &[u8]) -> String {
         let answered = self
             .reply(request, bytes)
@@ -38,7 +39,8 @@ impl Engine {
         })
     }
 
-    /// Says what the program offers that the engine is part of. Where that is a sensor on the desk, its frames are handed over from now on.
+    /// Sets what the surrounding program provides. If that includes a connected sensor, the program
+    /// hands over its frames from now on.
     pub fn set_offer(&mut self, offer: Offer, provenance: &str) {
         self.desk = offer.source.as_ref().map(|source| Desk::new(source, provenance));
         if let (Some(desk), Some(sensor)) = (&mut self.desk, &self.sensor) {
@@ -47,20 +49,21 @@ impl Engine {
         self.offer = offer;
     }
 
-    /// Keeps a file that descriptions name.
+    /// Stores a file that descriptions name.
     pub fn keep(&mut self, name: &str, bytes: &[u8]) {
         self.files.keep(name, bytes);
     }
 
-    /// Hands over a frame of the sensor that is offered: absolute pressures of its taxels, kPa, none of one without a reading. Nothing comes of it while a
-    /// line that is listened to has taken its place.
+    /// Hands over a frame of the connected sensor: absolute pressures of its taxels, kPa, `None`
+    /// for a taxel without a reading. The frame is ignored while a line that the page reads has
+    /// replaced that sensor.
     pub fn take_frame(&mut self, pressures_kpa: Vec<Option<f64>>) {
         if let Some(desk) = self.offered() {
             desk.take_frame(pressures_kpa);
         }
     }
 
-    /// Hands over what is odd about the frames of the sensor that is offered, a sentence each.
+    /// Sets the remarks about the frames of the connected sensor, one sentence each.
     pub fn set_remarks(&mut self, remarks: Vec<String>) {
         if let Some(desk) = self.offered() {
             desk.set_remarks(remarks);
@@ -71,13 +74,14 @@ impl Engine {
         self.desk.as_mut().filter(|desk| !desk.has_line())
     }
 
-    /// What there is to draw after the last request.
+    /// The arrays to draw after the last request.
     #[must_use]
     pub fn arrays(&self) -> &Arrays {
         &self.arrays
     }
 
-    /// The arrays that requests have changed since this was last asked: what has to be sent where memory is not shared.
+    /// The arrays that changed since the last call: those to send if the page does not share the
+    /// engine's memory.
     pub fn take_new(&mut self) -> impl Iterator<Item = Array> {
         self.arrays.take_new()
     }

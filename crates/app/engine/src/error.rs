@@ -1,40 +1,41 @@
-//! Why a request is not answered.
+//! Errors of requests.
 
-/// Why a request is not answered. The texts of what people write are those that the command line has.
+/// Why a request fails. Errors in files that people write have the same texts as on the command
+/// line.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum EngineError {
-    /// A text that is no request.
-    #[error("this is no request: {0}")]
+    /// The text is no request.
+    #[error("this is not a request: {0}")]
     Request(#[from] serde_json::Error),
-    /// A request that needs a sensor.
+    /// The request needs a sensor.
     #[error("there is no sensor yet: open a description first")]
     NoSensor,
-    /// A request that needs a mesh.
+    /// The request needs a mesh.
     #[error("there is no mesh yet: prepare a press first")]
     NoPress,
-    /// A request that needs a sensor on the desk.
+    /// The request needs a connected sensor.
     #[error("there is no sensor on the desk: connect one first")]
     NoDesk,
-    /// A sensor on the desk of another kind.
+    /// The connected sensor has another number of taxels than the description.
     #[error(
         "frames have {n_pressures} pressures, and the description of the sensor has {n_taxels} taxels: open the description of the sensor that is connected"
     )]
     Taxels {
-        /// Of the description.
+        /// Number of taxels of the description.
         n_taxels: usize,
-        /// Of a frame.
+        /// Number of pressures of a frame.
         n_pressures: usize,
     },
-    /// A description that can't be used.
+    /// The description cannot be used.
     #[error(transparent)]
     Sensor(#[from] twintac_sensor::SensorError),
-    /// A press that can't be.
+    /// The gel cannot be pressed in this way.
     #[error(transparent)]
     Simulate(#[from] twintac_simulate::SimulateError),
-    /// A shape that can't be.
+    /// The shape is impossible.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
-    /// A setting out of its range.
+    /// A setting is out of its range.
     #[error("`{field}` is {found}; give {expected}")]
     Setting {
         /// The setting.

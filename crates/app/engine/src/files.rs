@@ -1,21 +1,21 @@
-//! Files that a description names: a page has no folders, so they are kept by name.
+//! Files that a description names. A page has no folders, so they are stored by name.
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind};
 
-/// Files that were given, by their whole names and by these without folders.
+/// The stored files, by their full names and by their names without folders.
 #[derive(Default)]
 pub(crate) struct Files(BTreeMap<String, Vec<u8>>);
 
 impl Files {
-    /// Keeps a file in the place of one of its name.
+    /// Stores a file; it replaces one of the same name.
     pub(crate) fn keep(&mut self, name: &str, bytes: &[u8]) {
         for name in [name, base_name(name)] {
             self.0.insert(name.to_owned(), bytes.to_owned());
         }
     }
 
-    /// The bytes of the file at a path, or else of the one that the path ends with.
+    /// The bytes of the file at a path, or else of the stored file with whose name the path ends.
     pub(crate) fn load(&self, path: &str) -> std::io::Result<Vec<u8>> {
         let found = self.0.get(path).or_else(|| self.0.get(base_name(path))).cloned();
         let missing = || {

@@ -1,15 +1,16 @@
-//! Places all over a gel: a mesh that is fine at each of them is fine wherever a hand goes.
+//! Locations all over a gel. A mesh that is fine at each of them is fine wherever the user presses.
 
 use glam::DVec2;
 use twintac_sensor::Sensor;
 
-/// Distance between places over the gel's height: the fine parts of a mesh then run into each other.
+/// Distance between the locations in gel heights. At this distance the fine parts of the mesh
+/// merge.
 const APART: f64 = 0.6;
 
-/// Most places along an axis.
+/// Most locations along an axis.
 const MOST: f64 = 12.0;
 
-/// Places over the gel, its middle first, mm.
+/// Locations over the gel, its middle first, mm.
 pub(crate) fn places_mm(sensor: &Sensor) -> Vec<DVec2> {
     let (solid, surfaces) = (&sensor.gel.solid, &sensor.surfaces);
     let (low, high) = solid.bounds_mm(surfaces);

@@ -1,4 +1,5 @@
-//! The pressure map that a dashboard of a real sensor shows: what the taxels alone tell.
+//! The pressure map, the same that the dashboard of a real sensor shows: interpolated from the
+//! readings of the taxels.
 
 use twintac_map::{MapSettings, PreparedMap, Rectangle};
 use twintac_sensor::Sensor;
@@ -16,7 +17,7 @@ pub(crate) struct Map {
 }
 
 impl Map {
-    /// A map that is shown as this array; none where the taxels' places allow no map.
+    /// A map that is written into this array; `None` if the positions of the taxels allow no map.
     pub(crate) fn of(sensor: &Sensor, array: Array) -> Option<Self> {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let [min_mm, max_mm] = [low, high].map(|corner| corner.truncate().to_array());

@@ -1,4 +1,5 @@
-//! The surface of an indenter, to be drawn: surface nets over a grid of signed distances, so that what is drawn is what presses.
+//! The surface of an indenter for drawing: surface nets on a grid of signed distances, so that what
+//! is drawn is what presses.
 
 use std::collections::BTreeMap;
 
@@ -7,17 +8,18 @@ use twintac_shape::SignedDistance;
 
 use crate::arrays::{Array, Arrays};
 
-/// Cells along the longest side.
+/// Cells along the longest side of the bounding box.
 const CELLS: f64 = 48.0;
 
-/// Steps that take a corner onto the surface.
+/// Number of steps that project a corner onto the surface.
 const STEPS: usize = 3;
 
-/// Shows a shape's surface.
+/// Writes a shape's surface into the arrays.
 pub(crate) fn outline(shape: &dyn SignedDistance, arrays: &mut Arrays) {
     let (low, high) = shape.bounds_mm();
     let cell_mm = (high - low).max_element() / CELLS;
-    // A cell beyond the bounds on each side, so that the surface closes; half a cell off, so that no face lies in the grid's planes.
+    // One cell beyond the bounds on each side closes the surface. The offset of about half a cell
+    // keeps faces of the shape out of the planes of the grid.
     let origin = low - 1.47 * cell_mm;
     let counts = ((high - low) / cell_mm).ceil().as_ivec3() + 3;
     let at = |place: IVec3| origin + cell_mm * place.as_dvec3();
@@ -70,7 +72,7 @@ pub(crate) fn outline(shape: &dyn SignedDistance, arrays: &mut Arrays) {
     arrays.set_indices(Array::OutlineTriangles, &triangles);
 }
 
-/// The point of the surface near a point, no farther than a cell, and the normal there.
+/// The point of the surface near a point, at most one cell away, and the normal there.
 fn onto_surface(shape: &dyn SignedDistance, start: DVec3, cell_mm: f64) -> (DVec3, DVec3) {
     let mut place = start;
     for _ in 0..STEPS {

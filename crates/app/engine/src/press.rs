@@ -14,10 +14,10 @@ use crate::lattice::places_mm;
 use crate::map::Map;
 use crate::request::{Frame, Prepare, Prepared};
 
-/// How a number of a frame came about.
+/// Provenance of all numbers of a frame.
 const PROVENANCE: &str = "simulated";
 
-/// Farthest that a node is from the indenter that touches it, mm.
+/// Largest distance from the indenter at which a node counts as touched, mm.
 const TOUCHING_MM: f64 = 0.02;
 
 /// A meshed gel, and the indenter that presses it.
@@ -26,7 +26,7 @@ pub(crate) struct Press {
     indenter: Box<dyn SignedDistance>,
     taxels: Vec<String>,
     map: Option<Map>,
-    /// Nodes that the indenter can touch, and the area that belongs to each, mm².
+    /// Nodes that the indenter can touch, and the surface area of each, mm².
     top: Vec<(usize, f64)>,
 }
 
@@ -49,7 +49,7 @@ impl Press {
         })
     }
 
-    /// Shows the mesh, and the gel as it is.
+    /// Writes the mesh and the present state of the gel into the arrays.
     pub(crate) fn show_mesh(&self, arrays: &mut Arrays) -> Prepared {
         let mesh = self.state.fields().mesh;
         arrays.set_indices(Array::SurfaceTriangles, &mesh.boundary_triangles());
@@ -63,7 +63,7 @@ impl Press {
         }
     }
 
-    /// Shows the gel as it is; how much of it the indenter touches, mm².
+    /// Writes the present state of the gel into the arrays, and returns the touched area, mm².
     fn show(&self, arrays: &mut Arrays) -> f64 {
         let fields = self.state.fields();
         arrays.set_points(Array::DisplacementsMm, fields.displacements_mm);
@@ -139,7 +139,8 @@ fn settings(asked: &Prepare) -> Result<SimulateSettings, EngineError> {
     })
 }
 
-/// A path that presses everywhere, for which the gel is meshed. Its first pose is in the middle, where depths count from.
+/// A path that presses everywhere, for which the gel is meshed. Its first pose is in the middle,
+/// which defines depth zero.
 fn path(gel: &Gel, asked: &Prepare) -> Result<PressPath, EngineError> {
     let places = places_mm(gel.sensor());
     let at = |place: DVec2, z_mm: f64| Pose::from_position(place.extend(z_mm));

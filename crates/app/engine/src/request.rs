@@ -1,4 +1,4 @@
-//! What a page asks for, and what it is answered.
+//! Requests of a page, and their answers.
 
 use serde::{Deserialize, Serialize};
 use twintac_line::Serial;
@@ -6,73 +6,76 @@ use twintac_shape::Pose;
 
 use crate::desk::DeskFrame;
 
-/// What a page asks for.
+/// A request.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// Keeps a file that descriptions name: its bytes follow the request.
+    /// Stores a file that descriptions name. Its bytes follow the request.
     Keep {
         /// Its name.
         name: String,
     },
-    /// Reads the description of a sensor, which takes the place of the one before.
+    /// Opens the description of a sensor; it replaces the one before.
     Open {
-        /// The name of the file, for errors.
+        /// The name of the file, for error messages.
         file: String,
         /// Its text, TOML.
         text: String,
     },
-    /// Adds an indenter to the sensor, in the place of one of its name.
+    /// Adds an indenter to the sensor; it replaces one of the same name.
     Add {
-        /// The name of the file, for errors.
+        /// The name of the file, for error messages.
         file: String,
         /// Its text, TOML.
         text: String,
     },
-    /// Makes the surface of an indenter, to be drawn.
+    /// Makes the surface of an indenter for drawing.
     Outline {
         /// The indenter's name.
         indenter: String,
     },
-    /// Meshes the gel for an indenter that presses anywhere on it.
+    /// Meshes the gel for an indenter that can press anywhere on it.
     Prepare(Prepare),
-    /// Takes the indenter to a pose.
+    /// Moves the indenter to a pose.
     Step {
         /// Time since the last frame, s.
         since_s: f64,
-        /// Where to.
+        /// The new pose.
         gel_from_indenter: Pose,
     },
-    /// Lets go of the gel: it is at rest, and remembers nothing.
+    /// Removes the indenter: the gel is at rest, without any memory of before.
     Rest {},
-    /// What the program offers that the engine is part of.
+    /// Asks what the surrounding program provides.
     Offer {},
-    /// Reads the description of a line, TOML. What comes over that line is a sensor on the desk, in the place of one before.
+    /// Reads the description of a line (TOML). The connected sensor is then the one on that line;
+    /// it replaces one before.
     Listen {
-        /// The name of the file, for errors.
+        /// The name of the file, for error messages.
         file: String,
         /// Its text, TOML.
         text: String,
     },
-    /// What the sensor on the desk reads. Bytes of its line follow the request, if there is a line.
+    /// Asks for the state of the connected sensor. If it has a line, the line's new bytes follow
+    /// the request.
     Hear {},
-    /// Takes the next frames of the sensor on the desk for untouched.
+    /// Measures the zero of the connected sensor again, from its next frames.
     Zero {},
 }
 
-/// How a gel is meshed.
+/// How the gel is meshed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Prepare {
     /// The indenter's name.
     pub(crate) indenter: String,
-    /// How deep it will press, mm: the mesh is as fine as that needs.
+    /// Largest depth of the presses, mm: the mesh is as fine as that needs.
     pub(crate) depth_mm: f64,
-    /// Most nodes of the mesh. One that is refined at the indenter's rim has up to two thirds more.
+    /// Most nodes of the mesh. A mesh that is refined at the indenter's rim has up to two thirds
+    /// more.
     pub(crate) max_nodes: usize,
 }
 
-/// What comes back.
+/// An answer.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Reply {
@@ -84,60 +87,61 @@ pub(crate) enum Reply {
     Prepared(Prepared),
     /// The indenter was moved.
     Frame(Frame),
-    /// What the program offers.
+    /// What the surrounding program provides.
     Offer(Offer),
-    /// A line is described.
+    /// A line was described.
     Line(Serial),
-    /// What the sensor on the desk reads.
+    /// The state of the connected sensor.
     Desk(DeskFrame),
 }
 
-/// What the program offers that the engine is part of.
+/// What the surrounding program provides.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Offer {
-    /// The description to begin with, if one was chosen: the name of its file, and its text.
+    /// The description to open first, if one was chosen: the name of its file, and its text.
     pub sensor: Option<[String; 2]>,
-    /// Where frames of a sensor on the desk come from, if there is one.
+    /// Where frames of the connected sensor come from, if there is one.
     pub source: Option<String>,
 }
 
 /// A mesh.
 #[derive(Debug, Serialize)]
 pub(crate) struct Prepared {
-    /// Nodes.
+    /// Number of nodes.
     pub(crate) n_nodes: usize,
-    /// Tetrahedra.
+    /// Number of tetrahedra.
     pub(crate) n_tets: usize,
-    /// Height of the indenter's origin where it first touches the middle of the gel, upright, mm: depths count from there.
+    /// Height of the indenter's origin at first contact with the middle of the gel, upright, mm.
+    /// Depths count from there.
     pub(crate) touch_mm: f64,
 }
 
-/// One moment of a press. Forces act on the gel, in its frame.
+/// One frame of a press. Forces act on the gel, in its frame of reference.
 #[derive(Debug, Serialize)]
 pub(crate) struct Frame {
-    /// How far the indenter is below first touch, mm.
+    /// Depth of the indenter below first contact, mm.
     pub(crate) depth_mm: f64,
     /// Force of the indenter, N.
     pub(crate) force_n: [f64; 3],
     /// Torque of the indenter about its origin, N mm.
     pub(crate) torque_n_mm: [f64; 3],
-    /// Pressure at the port of each taxel, kPa, in their order.
+    /// Pressure at the port of each taxel, kPa, in the order of the taxels.
     pub(crate) pressure_kpa: Vec<f64>,
-    /// Area of the gel's surface that the indenter touches, mm², as it was at rest.
+    /// Area of the gel's surface that the indenter touches, mm², measured at rest.
     pub(crate) contact_mm2: f64,
-    /// Whether the forces are balanced.
+    /// Whether the solver converged: the forces are balanced.
     pub(crate) converged: bool,
     /// Newton iterations.
     pub(crate) iterations: u32,
-    /// Unbalanced forces over the load.
+    /// Residual: unbalanced forces divided by the load.
     pub(crate) residual: f64,
-    /// How a number of this frame came about.
+    /// Provenance of the numbers.
     pub(crate) provenance: &'static str,
 }
 
-/// What is answered where something is wrong.
+/// The answer to a wrong request.
 #[derive(Serialize)]
 pub(crate) struct Refused {
-    /// One error, in words.
+    /// The error in words.
     pub(crate) error: String,
 }

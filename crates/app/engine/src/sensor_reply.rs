@@ -1,4 +1,4 @@
-//! What a page has to know of a sensor.
+//! The data of a sensor that a page needs.
 
 use glam::DVec3;
 use serde::Serialize;
@@ -12,7 +12,7 @@ pub(crate) struct SensorReply {
     source: String,
     /// Its description in words.
     description: String,
-    /// Corners of the box that holds the gel, mm.
+    /// Corners of the gel's bounding box, mm.
     gel_mm: [DVec3; 2],
     /// Constants of the gel, in words.
     material: &'static str,

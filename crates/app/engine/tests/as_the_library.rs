@@ -1,4 +1,4 @@
-//! The engine answers what the library finds, and refuses in the words of the command line.
+//! The engine gives the results of the library, and its errors have the texts of the command line.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -34,7 +34,8 @@ fn step(position_mm: [f64; 3]) -> Value {
     json!({"do": "step", "since_s": 0.02, "gel_from_indenter": pose})
 }
 
-/// The fine mesh of the engine gives what a press of the library gives, within what meshes differ by.
+/// A press on the engine's fine mesh gives the result of the library, within the difference of the
+/// meshes.
 #[test]
 fn a_press_is_that_of_the_library() {
     let mut engine = opened();
@@ -130,7 +131,7 @@ fn what_is_drawn_is_the_shape() {
         let off = at(corner).distance(glam::Vec3::Z * radius_mm) - radius_mm;
         assert!(off.abs() < 0.01, "{off} mm");
     }
-    // Outward, and closed: the volume is that of the ball.
+    // The triangles face outward and close the surface: their volume is that of the ball.
     let volume: f32 = triangles
         .iter()
         .map(|[a, b, c]| at(*a).cross(at(*b)).dot(at(*c)) / 6.0)
@@ -175,6 +176,6 @@ fn errors_are_those_of_the_library_and_change_nothing() {
     );
     let refused = ask(&mut engine, &step([0.0, 0.0, 0.0]));
     assert_eq!(refused["error"], "there is no mesh yet: prepare a press first");
-    // The sensor is still there.
+    // The sensor is unchanged.
     assert!(ask(&mut engine, &prepare("cube"))["n_nodes"].is_number());
 }

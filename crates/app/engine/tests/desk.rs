@@ -1,4 +1,4 @@
-//! A sensor on the desk is heard over a line, byte by byte, and by frames that are handed over.
+//! A connected sensor: read over a line, byte by byte, and by frames that the program hands over.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -23,7 +23,7 @@ fn opened() -> Engine {
     engine
 }
 
-/// Has a program offer a sensor.
+/// Lets the surrounding program provide a sensor.
 fn offer(engine: &mut Engine, source: &str, provenance: &str) {
     let source = Some(source.to_owned());
     let sensor = None;
@@ -34,7 +34,7 @@ fn hear(engine: &mut Engine, bytes: &[u8]) -> Value {
     ask(engine, &json!({"do": "hear"}), bytes)
 }
 
-/// Frames of pressures that grow from taxel to taxel, and by `more` kPa.
+/// A frame whose pressures increase from taxel to taxel, shifted by `more_kpa`.
 fn frame(more_kpa: f64) -> Vec<Option<f64>> {
     (0..8)
         .map(|taxel| Some(100.0 + f64::from(taxel) + more_kpa))
@@ -118,7 +118,7 @@ fn a_line_is_read_in_pieces_of_any_size() {
     }
     let mut heard = Value::Null;
     for piece in text.as_bytes().chunks(17) {
-        engine.take_frame(frame(7.0)); // of the sensor that the line has taken the place of
+        engine.take_frame(frame(7.0)); // from the sensor that the line has replaced
         heard = hear(&mut engine, piece);
     }
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Writes the seeds of all targets, each into a file of the folder that is named: `<folder>/<target>/<number>`.
+//! Writes the seeds of all targets into a folder, one file each: `<folder>/<target>/<number>`.
 
 use std::path::PathBuf;
 

@@ -1,9 +1,24 @@
-//! What must hold whatever bytes come from a wire or a file: one function each, which panics where it does not.
+//! Properties that must hold for any bytes from a wire or a file: one function for each kind of
+//! bytes, which panics if a property does not hold.
 //!
-//! The package `fuzz/`, beside the workspace, runs them with libFuzzer (`cargo xtask fuzz`); a test of this crate runs them on the
-//! [`seeds`](Target::seeds) and on the corpus that fuzzing found, so that it needs no fuzzer.
+//! [`TARGETS`] has nine kinds: frames, requests and reports of the robot, datagrams of the
+//! force/torque sensor, the tactile sensor's bus, lines of microcontrollers, log files, log
+//! messages, and texts. [`run`] checks one input.
+//!
+//! # How it works
+//!
+//! A check decodes the bytes, encodes the result again and compares, or lets a driver, a client or
+//! an emulated device process them, and asserts bounds: sizes, numbers of transactions, times,
+//! finite numbers. An input that is refused with an error is fine; a panic, a wrong result or an
+//! unbounded allocation is a finding.
+//!
+//! The package `fuzz/`, beside the workspace, runs the checks with libFuzzer (`cargo xtask fuzz`).
+//! A test of this crate runs them on the [`seeds`](Target::seeds) and on the corpus that fuzzing
+//! found, so that it needs no fuzzer.
+//!
+//! The crate depends on no solver and on no twin.
 
-#![allow(clippy::unwrap_used)] // a property that does not hold is a panic
+#![allow(clippy::unwrap_used)] // a violated property is a panic
 
 mod line;
 mod log;
@@ -16,15 +31,15 @@ mod xarm;
 /// A kind of bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Its name, and that of the folder of its corpus.
+    /// Its name, and the name of its corpus's folder.
     pub name: &'static str,
     /// Panics if a property does not hold for these bytes.
     pub run: fn(&[u8]),
-    /// Right bytes to begin with, such as the makers' documents have.
+    /// Valid inputs to start with, such as the examples of the manufacturers' documents.
     pub seeds: fn() -> Vec<Vec<u8>>,
 }
 
-/// All kinds.
+/// All kinds of bytes.
 pub const TARGETS: [Target; 9] = [
     Target {
         name: "xarm_frames",
@@ -73,7 +88,7 @@ pub const TARGETS: [Target; 9] = [
     },
 ];
 
-/// Runs the target of a name on some bytes.
+/// Checks some bytes with the target of this name.
 ///
 /// # Panics
 /// If a property does not hold for these bytes, or there is no such target.

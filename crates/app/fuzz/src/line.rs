@@ -1,8 +1,8 @@
-//! A line on which anything may come.
+//! A serial line that carries any bytes.
 
 use twintac_line::{Decoder, Description, Heard};
 
-/// Lines of every form.
+/// Descriptions of lines, of every form.
 const FORMS: [&str; 7] = [
     "form = \"text\"\nfields = [\"sequence\", \"time\", \"pressure * 2\", \"temperature\"]\ntext.checksum = \"xor8\"",
     "form = \"json\"\nkeys.n = \"sequence\"\nkeys.t = \"time\"\nkeys.p = \"pressure * 2\"",
@@ -13,7 +13,8 @@ const FORMS: [&str; 7] = [
     "form = \"binary\"\nfields = [\"u8 fault * 2\", \"f32 pressure * 2\"]\nbinary = { framing = \"cobs\", checksum = \"sum8\" }",
 ];
 
-/// What a decoder makes of these bytes. The first one says of which form they are, the second in pieces of which size they come.
+/// Decodes the bytes. The first byte chooses the form, the second the size of the pieces in which
+/// they arrive.
 pub(crate) fn bytes(bytes: &[u8]) {
     let [form, size, bytes @ ..] = bytes else {
         return;
@@ -25,7 +26,7 @@ pub(crate) fn bytes(bytes: &[u8]) {
     assert_eq!(whole, in_pieces, "pieces say the same as the whole");
 }
 
-/// Frames, as text, and what else there was.
+/// The decoded frames and other events as text.
 fn frames(description: &Description, bytes: &[u8], size: usize) -> String {
     let mut decoder = Decoder::new(description, 2);
     let (mut said, mut n_frames, mut n_lost) = (String::new(), 0, 0_u64);

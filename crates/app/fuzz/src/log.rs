@@ -1,4 +1,4 @@
-//! Recorded logs: the container, the messages in it, the presses that they make.
+//! Recorded logs: the container, its messages, and the presses made from them.
 
 use twintac_log::{Body, Description, Event, LogError, LogReader, LogWriter, Message, ReadOptions, presses};
 
@@ -7,7 +7,7 @@ use crate::seeds::{MESSAGE, START_UNIX_NS, log_start};
 /// Bytes of a record's kind and length.
 const FRAMING_BYTES: usize = 9;
 
-/// A file.
+/// Checks the bytes of a file.
 pub(crate) fn file(bytes: &[u8]) {
     let Some((description, messages)) = read(bytes) else {
         return;
@@ -31,20 +31,21 @@ pub(crate) fn file(bytes: &[u8]) {
     }
 }
 
-/// A file that was cut holds the messages up to there.
+/// Checks that a cut file has the messages before the cut.
 fn cut(bytes: &[u8], messages: &[Message]) {
     let at = usize::from(*bytes.last().unwrap()) * bytes.len() / 256;
     let Some((_, mut before)) = read(&bytes[..at]) else {
         return;
     };
-    // Damage at the end is a gap that reaches to what is not there any more.
+    // Damage at the end reads as a gap up to the end of the file.
     before.pop_if(|last| matches!(last.body, Body::Event(Event::Gap { stream: None, .. })));
     assert!(before.len() <= messages.len());
-    let same = |(one, other): (&Message, &Message)| format!("{one:?}") == format!("{other:?}"); // NaN is NaN
+    let same = |(one, other): (&Message, &Message)| format!("{one:?}") == format!("{other:?}"); // compared as text, because NaN is not equal to NaN
     assert!(before.iter().zip(messages).all(same));
 }
 
-/// Messages with a right container around them: of each a channel, a length, a step of time, and its bytes.
+/// Puts a valid container around messages. Each message consists of a channel, a length, a time
+/// step, and its bytes.
 pub(crate) fn messages(bytes: &[u8]) {
     let mut whole = log_start();
     let (mut rest, mut time_ns) = (bytes, START_UNIX_NS);
@@ -64,7 +65,7 @@ pub(crate) fn messages(bytes: &[u8]) {
     file(&whole);
 }
 
-/// What can be read; nothing of what is no log.
+/// The readable part of a log; `None` if the bytes are no log.
 fn read(bytes: &[u8]) -> Option<(Description, Vec<Message>)> {
     let mut reader = LogReader::new(bytes, "log").ok()?;
     let messages = reader.by_ref().map_while(Result::ok).collect();
@@ -73,7 +74,7 @@ fn read(bytes: &[u8]) -> Option<(Description, Vec<Message>)> {
     Some((reader.description().clone(), messages))
 }
 
-/// The log of messages that were read, as it is recovered.
+/// A log with these messages, written as for a recovered file.
 fn write(description: &Description, messages: &[Message]) -> Vec<u8> {
     let mut writer = LogWriter::new(Vec::new(), description).unwrap();
     for message in messages {

@@ -1,4 +1,4 @@
-//! The force/torque sensor's datagrams.
+//! Datagrams of the force/torque sensor.
 
 use twintac_emulate::force::{ForceSensor, ForceSettings};
 use twintac_emulate::{Hertz, LabClock, Workcell};
@@ -8,7 +8,7 @@ use twintac_rig::netft::{
 
 use crate::seeds::PAGE;
 
-/// A datagram, from the sensor or to it.
+/// Checks a datagram from the sensor or to it.
 pub(crate) fn datagrams(bytes: &[u8]) {
     if let Ok(request) = Request::decode(bytes) {
         assert_eq!(request.encode().as_slice(), bytes);
@@ -35,7 +35,7 @@ fn follow(records: &[Record]) {
     assert_eq!(report.received + report.doubled, records.len() as u64);
 }
 
-/// The emulated sensor is asked, every two milliseconds.
+/// Sends requests to the emulated sensor, one every 2 ms.
 fn ask(bytes: &[u8]) {
     let clock = LabClock::virtual_time();
     let robot = twintac_emulate::robot::RobotSettings::default();

@@ -1,4 +1,4 @@
-//! Right bytes, as documents have them and as our own encoders make them: fuzzing begins with them.
+//! Valid inputs, from documents and from this project's encoders. Fuzzing starts with them.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ const TOML: &str = "range_v = 10.0\nbias_v = [0, 0, 0, 0, 0, 0.5]\nmatrix = [[1,
     [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]\n";
 const CSV: &str = "time_s,fx_n,fy_n,fz_n,tx_n_mm,ty_n_mm,tz_n_mm\n0.0,1,2,3,4,5,6\n0.1,-1,-2,-3,4e2,5,6\n";
 
-/// The start of the clock of logs here.
+/// Start of the clock of these logs.
 pub(crate) const START_UNIX_NS: u64 = 1_700_000_000_000_000_000;
 
 fn at(height_mm: f64) -> TcpPose {
@@ -36,7 +36,7 @@ fn at(height_mm: f64) -> TcpPose {
     }
 }
 
-/// From enabling to stopping, with all that can be asked.
+/// A session from enabling to stopping, with all requests.
 fn session() -> Vec<(Command, Answer)> {
     let to = |height_mm| MoveTo {
         pose: at(height_mm),
@@ -297,7 +297,8 @@ pub(crate) fn log_start() -> Vec<u8> {
     without_definitions(&log)
 }
 
-/// The same log, without the texts of its schemas: half of its bytes, of which nothing is read back.
+/// The same log without the texts of its schemas: they are half of its bytes, and the reader does
+/// not use them.
 fn without_definitions(log: &[u8]) -> Vec<u8> {
     let (magic, mut rest) = log.split_at(8);
     let mut short = magic.to_vec();
@@ -318,7 +319,8 @@ fn without_definitions(log: &[u8]) -> Vec<u8> {
     short
 }
 
-/// Whole, cut, damaged, and without a checksum, so that what is in the chunk can be changed.
+/// A whole log, a cut one, a damaged one, and one without a checksum, so that the fuzzer can change
+/// the content of its chunk.
 pub(crate) fn log_files() -> Vec<Vec<u8>> {
     let (whole, end) = written(&press());
     let cut = without_definitions(&whole[..end]);
@@ -331,7 +333,8 @@ pub(crate) fn log_files() -> Vec<Vec<u8>> {
     vec![log_start(), cut, whole, damaged, unchecked]
 }
 
-/// The messages of ours out of a log: a channel, a length, a step of time, and bytes of each.
+/// The messages of this project's types from a log: a channel, a length, a time step, and the bytes
+/// of each.
 pub(crate) fn log_messages() -> Vec<Vec<u8>> {
     let whole = without_definitions(&written(&press()).0);
     let mut rest = &whole[log_start().len() + CHUNK_START_BYTES..];
@@ -353,11 +356,11 @@ pub(crate) fn log_messages() -> Vec<Vec<u8>> {
 
 const SCHEMA: u8 = 0x03;
 pub(crate) const MESSAGE: u8 = 0x05;
-/// In a chunk: where its checksum is, and its first message.
+/// Offsets in a chunk: of its checksum, and of its first message.
 const CHECKSUM_AT: usize = 9 + 3 * 8;
 const CHUNK_START_BYTES: usize = CHECKSUM_AT + 4 + 4 + 8;
 
-/// A whole log, and where it would end had it been cut before its end.
+/// A whole log, and its length if it had been cut before its end.
 fn written(messages: &[Message]) -> (Vec<u8>, usize) {
     let mut writer = LogWriter::new(Vec::new(), &description()).unwrap();
     for message in messages {
@@ -368,7 +371,7 @@ fn written(messages: &[Message]) -> (Vec<u8>, usize) {
     (writer.finish().unwrap(), end)
 }
 
-/// Calls and a chip, then a bus on which all is well, one where a taxel is missing, one that hangs.
+/// Calls and a chip, then a bus without faults, one with a missing taxel, and one that hangs.
 pub(crate) fn taxel_bus() -> Vec<Vec<u8>> {
     let counts = [0x00, 0x31, 0x79, 0x80, 0x19, 0x80];
     let frame = counts.repeat(40);
@@ -383,12 +386,12 @@ pub(crate) fn taxel_bus() -> Vec<Vec<u8>> {
         calls(0xFF, 0, &missing),
         calls(4, 0, &hung),
     ];
-    // Of every other chip, a bus that says what it likes.
+    // For every other chip, a bus with arbitrary data.
     seeds.extend((1..11).map(|chip| calls(0, chip, &frame)));
     seeds
 }
 
-/// A form and the size of pieces, then lines and packets as boards send them.
+/// A form and a size of pieces, then lines and packets as boards send them.
 pub(crate) fn lines() -> Vec<Vec<u8>> {
     let texts: [&[u8]; 4] = [
         b"ESP-ROM:esp32s3\r\n1,100,101325,nan,25.5*3a\r\n# comment\n2,110,101330,101200,25.5*00\r\n",

@@ -1,4 +1,4 @@
-//! The tactile sensor on a bus of which anything may come.
+//! The tactile sensor on a bus that returns any bytes.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -12,16 +12,17 @@ use phystac::{
 const SWITCH: u8 = 0x70;
 const COMMAND: u8 = 0x30;
 const PRESSURE_CONFIGURATION: u8 = 0xA6;
-/// What one call may cost, whatever the bus does: transactions, and µs.
+/// Largest cost of one call, whatever the bus does: transactions, and µs.
 const MOST_TRANSACTIONS: usize = 3000;
 const MOST_US: u64 = 200_000;
-/// What switching a chip on may cost besides, µs.
+/// Largest additional time to start one chip, µs.
 const MOST_START_US: u64 = 200_000;
 
-/// The first byte of a transaction says how it ends; up to these all is as it should be but for the data.
+/// The first byte of a transaction chooses its result. Up to this value the bus works, and only the
+/// data are arbitrary.
 const HONEST: u8 = 0xDF;
 
-/// A bus that answers from bytes; when there are none left, with zeros.
+/// A bus that answers with the given bytes, and with zeros after them.
 struct Bytes<'a> {
     bytes: &'a [u8],
     chip: Chip,
@@ -96,7 +97,7 @@ impl I2c for Bytes<'_> {
     }
 }
 
-/// Time that passes where the driver waits.
+/// A clock that advances when the driver waits.
 #[derive(Clone)]
 struct Time(Rc<Cell<u64>>);
 
@@ -106,7 +107,8 @@ impl DelayNs for Time {
     }
 }
 
-/// A sensor whose bus answers with these bytes. The first one says what is called between frames, the second of which chips it is.
+/// Checks a sensor whose bus answers with these bytes. The first byte chooses the calls between
+/// frames, the second the kind of chips.
 pub(crate) fn bus(bytes: &[u8]) {
     let [calls, chip, bytes @ ..] = bytes else {
         return;

@@ -3,7 +3,7 @@
 use twintac_rig::netft::Configuration;
 use twintac_rig::{AnalogCalibration, Replay};
 
-/// The first byte says which text follows.
+/// Checks a text. The first byte chooses its kind.
 pub(crate) fn texts(bytes: &[u8]) {
     let Some((kind, text)) = bytes.split_first() else {
         return;

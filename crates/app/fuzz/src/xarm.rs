@@ -1,4 +1,4 @@
-//! The robot: its frames, its reports, and what the emulated one makes of requests.
+//! The robot: its frames, its reports, and the emulated robot's answers to requests.
 
 use glam::DVec3;
 use twintac_emulate::robot::{Controller, RobotSettings};
@@ -20,7 +20,7 @@ const QUESTIONS: [Command; 7] = [
     Command::CleanError,
 ];
 
-/// A stream from or to the robot.
+/// Checks a stream from the robot or to it.
 pub(crate) fn frames(bytes: &[u8]) {
     for frame in split_twice(splitter, LARGEST_FRAME_BYTES, bytes) {
         if let Ok(request) = Request::decode(&frame) {
@@ -49,7 +49,7 @@ fn answer(command: &Command, payload: &[u8]) {
     }
 }
 
-/// A client that is answered with these bytes.
+/// Runs a client that receives these bytes as answers.
 fn converse(bytes: &[u8]) {
     let (reader, writer) = (bytes, Vec::new());
     let mut client = Client::new(Pair { reader, writer });
@@ -60,7 +60,8 @@ fn converse(bytes: &[u8]) {
     let _ = client.stop();
 }
 
-/// Requests to the emulated robot. The transaction says how long after the one before a request comes, in ms.
+/// Sends requests to the emulated robot. The transaction number is the delay after the last
+/// request, in ms.
 pub(crate) fn controller(bytes: &[u8]) {
     let clock = LabClock::virtual_time();
     let settings = RobotSettings::default();
@@ -98,7 +99,7 @@ pub(crate) fn controller(bytes: &[u8]) {
     }
 }
 
-/// A stream of reports.
+/// Checks a stream of reports.
 pub(crate) fn reports(bytes: &[u8]) {
     let split = split_twice(report_splitter, LARGEST_REPORT_BYTES, bytes);
     for frame in split.iter().map(Vec::as_slice).chain([bytes]) {
@@ -115,7 +116,7 @@ pub(crate) fn reports(bytes: &[u8]) {
     }
 }
 
-/// The frames of a stream, which are the same however it is read.
+/// The frames of a stream. They must be the same in whatever pieces it is read.
 fn split_twice(splitter: fn() -> Splitter, largest: usize, bytes: &[u8]) -> Vec<Vec<u8>> {
     let frames = split(splitter(), largest, bytes, bytes.len());
     assert_eq!(split(splitter(), largest, bytes, 3), frames);

@@ -1,4 +1,4 @@
-//! The corpus that fuzzing found, without a fuzzer.
+//! Runs all checks on the seeds and on the corpus that fuzzing found, without a fuzzer.
 
 #![allow(clippy::unwrap_used)]
 

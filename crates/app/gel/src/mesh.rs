@@ -1,4 +1,4 @@
-//! A gel's mesh, and files of it for other programs.
+//! The gel's mesh, and its files for other programs.
 
 use std::path::Path;
 
@@ -12,10 +12,10 @@ use twintac_work::{At, WorkError};
 
 pub use twintac_shape::LengthUnit;
 
-/// Edges over the gel's height, where nothing else is asked for.
+/// Edges over the gel's height with [`Fineness::Usual`].
 const EDGES_PER_HEIGHT: f64 = 6.0;
 
-/// How fine a mesh is to be.
+/// How fine a mesh is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fineness {
     /// Six edges over the gel's height.
@@ -23,21 +23,21 @@ pub enum Fineness {
     Usual,
     /// Edges of this length, mm.
     EdgeMm(f64),
-    /// About so many nodes: met within a tenth.
+    /// About this many nodes, within 10 %.
     Nodes(usize),
 }
 
-/// A sensor's gel, meshed.
+/// The meshed gel of a sensor.
 #[derive(Clone, Debug)]
 pub struct MeshedGel {
     /// The mesh; z = 0 at the board.
     pub mesh: TetMesh,
-    /// How good it is.
+    /// The quality of the mesh.
     pub quality: Quality,
 }
 
 impl MeshedGel {
-    /// Meshes the gel of a sensor, around what stands in it.
+    /// Meshes the gel of a sensor around its inclusions.
     ///
     /// # Errors
     /// A fineness that gives no mesh.
@@ -77,10 +77,10 @@ impl MeshedGel {
     }
 }
 
-/// How good the mesh in a Gmsh file is, whose lengths have this unit.
+/// The quality of the mesh in a Gmsh file whose lengths have this unit.
 ///
 /// # Errors
-/// A file that cannot be read, that is no mesh of tetrahedra, or whose size the unit does not explain.
+/// A file that cannot be read, that is no mesh of tetrahedra, or whose size does not fit the unit.
 pub fn check_mesh(path: &Path, unit: LengthUnit) -> Result<Quality, WorkError> {
     let bytes = std::fs::read(path).map_err(WorkError::file("reading", path))?;
     let mesh = gmsh::read(&bytes, unit.in_mm()).at(|| path.display().to_string())?;

@@ -21,10 +21,12 @@ impl Checked for SimulateFile {
     }
 }
 
-/// Settings of the simulation but for those of the file's table `[simulate]`, if there is a file.
+/// The settings of the simulation: `base`, with the values of the file's table `[simulate]` in
+/// place of its own, if there is a file.
 ///
 /// # Errors
-/// A file that cannot be read or has another table, a field that there is not, a value that makes no sense.
+/// A file that cannot be read or has another table, an unknown field, or a value that is not
+/// allowed.
 pub fn simulate_settings(base: SimulateSettings, path: Option<&Path>) -> Result<SimulateSettings, WorkError> {
     let Some(path) = path else {
         return Ok(base);

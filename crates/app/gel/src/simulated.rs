@@ -1,4 +1,4 @@
-//! Presses of the simulated gel, without a run: along a protocol, or along a path.
+//! Simulated presses without a run: along a protocol, or along a path.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -23,8 +23,8 @@ struct SimulatedPress<'a> {
     table: &'a DepthTable,
 }
 
-/// Simulates presses, and writes a table over depth for each into `folder`; with `frames` also the pressed gel of every frame for ParaView,
-/// in `vtk/`.
+/// Simulates presses, and writes the table over depth of each into `folder`. With `frames` it also
+/// writes the deformed gel of every frame for ParaView, in `vtk/`.
 ///
 /// # Errors
 /// A press that the gel cannot carry out; a file that cannot be written.
@@ -57,7 +57,7 @@ pub fn simulate_presses(
         })
 }
 
-/// A press as a table over depth; `vtk` is what the names of its frames' files begin with.
+/// A press as a table over depth. `vtk` is the beginning of its frames' file names.
 fn simulate(gel: &Gel, plan: &PressPlan, vtk: Option<&Path>) -> Result<DepthTable, WorkError> {
     let place = PressPlace {
         enough_force_n: None,
@@ -80,7 +80,7 @@ fn simulate(gel: &Gel, plan: &PressPlan, vtk: Option<&Path>) -> Result<DepthTabl
     Ok(table)
 }
 
-/// The pressed gel, where it is now.
+/// Writes the deformed gel.
 fn write_frame(path: &Path, fields: &Fields<'_>) -> Result<(), WorkError> {
     let mut mesh = fields.mesh.clone();
     mesh.nodes_mm
@@ -113,16 +113,18 @@ pub struct SimulatedPath {
     pub sensor: String,
     /// The path.
     pub path: PressPath,
-    /// What the gel did. A path that could not be followed to its end says so in [`Followed::failure`].
+    /// The response of the gel. If the path could not be followed to its end, [`Followed::failure`]
+    /// says why.
     #[serde(flatten)]
     pub followed: Followed,
 }
 
 impl SimulatedPath {
-    /// Takes an indenter along the path that a TOML file describes.
+    /// Moves an indenter along the path that a TOML file describes.
     ///
     /// # Errors
-    /// A file that cannot be read or is wrong; an indenter that the sensor does not have; a point with the name of a taxel.
+    /// A file that cannot be read or is wrong; an indenter that the sensor does not have; a point
+    /// with the name of a taxel.
     pub fn follow(gel: &Gel, file: &Path, progress: &dyn Progress) -> Result<Self, WorkError> {
         let path = PressPath::parse(&file.display().to_string(), &read_text(file)?)?;
         let shape = gel.shape(&path.indenter)?;

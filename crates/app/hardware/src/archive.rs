@@ -1,4 +1,4 @@
-//! ZIP archives without dates: the same files give the same bytes.
+//! ZIP archives without dates, so that the same files give the same bytes.
 
 use std::io::{Cursor, Write};
 
@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// An archive of files by their names. All of them are as old as the format can tell.
+/// An archive of files by their names. All have the earliest date of the format.
 pub(crate) fn of(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default()

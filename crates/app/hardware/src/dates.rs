@@ -1,18 +1,20 @@
-//! Dates in files, replaced by a fixed one of the same length: the same board gives the same bytes.
+//! Replaces dates in files by a fixed one of the same length, so that the same board gives the same
+//! bytes.
 
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 
-/// Digits are `0` here, all other characters stand for themselves; `T` may be a blank.
+/// Pattern of a date: `0` stands for any digit, `T` for itself or a blank, and other characters for
+/// themselves.
 const STAMP: &[u8] = b"0000-00-00T00:00:00";
 const INSTEAD: &[u8] = b"1980-01-01T00:00:00";
-/// The form of PDF.
+/// The pattern in PDF files.
 const PDF_STAMP: &[u8] = b"D:00000000000000";
 const PDF_INSTEAD: &[u8] = b"D:19800101000000";
 
-/// Of a file.
+/// Replaces all dates of a file.
 pub(crate) fn fix(path: &Path) -> Result<()> {
     let mut bytes = fs::read(path).with_context(|| format!("reading {}", path.display()))?;
     replace(&mut bytes);

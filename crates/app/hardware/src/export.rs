@@ -1,4 +1,4 @@
-//! Fabrication files and pictures, by KiCad.
+//! Fabrication files and pictures, made by KiCad.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::kicad::Kicad;
 
 const LAYERS: &str = "F.Cu,B.Cu,F.Mask,B.Mask,F.Paste,B.Paste,F.SilkS,B.SilkS,Edge.Cuts";
 
-/// Arguments that no name or path is in, by words.
+/// Arguments without names or paths, separated by blanks.
 const GERBER: &str = "pcb export gerbers --subtract-soldermask --no-protel-ext -o ../fabrication/";
 const DRILL: &str = "pcb export drill --format excellon --excellon-separate-th -o ../fabrication/";
 const PLACEMENT: &str =
@@ -20,7 +20,7 @@ const SCHEMATIC: &str = "sch export pdf -o ../schematic.pdf";
 const SVG: &str = "pcb export svg --mode-single --page-size-mode 2 --exclude-drawing-sheet";
 const PNG: &str = "pcb render -w 1400 -h 800 --zoom 1.5";
 
-/// Into `fabrication` and `pictures` beside the project.
+/// Writes all files into `fabrication` and `pictures` beside the project.
 pub(crate) fn all(kicad: &Kicad, folder: &Path, name: &str) -> Result<()> {
     for sub in ["fabrication", "pictures"] {
         fs::create_dir_all(folder.join(sub))?;

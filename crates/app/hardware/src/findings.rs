@@ -1,4 +1,4 @@
-//! What KiCad's rule checks find, of all severities.
+//! Violations that KiCad's rule checks report, of all severities.
 
 use std::fs;
 use std::path::Path;
@@ -46,8 +46,8 @@ struct Position {
     y: f64,
 }
 
-/// Electrical rules of the schematic; design rules of the board and its parity with the schematic:
-/// one text for each finding.
+/// Checks the electrical rules of the schematic, the design rules of the board, and the board's
+/// parity with the schematic. Returns one text for each violation.
 pub(crate) fn of(kicad: &Kicad, project: &Path, name: &str) -> Result<Vec<String>> {
     let reports = reports_of(project);
     fs::create_dir_all(&reports)?;
@@ -75,7 +75,7 @@ pub(crate) fn of(kicad: &Kicad, project: &Path, name: &str) -> Result<Vec<String
     Ok(sheets.chain(of_board.into_iter().flatten()).map(told).collect())
 }
 
-/// Reports lie beside the project.
+/// The folder of the reports, beside the project.
 fn reports_of(project: &Path) -> std::path::PathBuf {
     let reports = project.with_file_name("checks");
     std::path::absolute(&reports).unwrap_or(reports)

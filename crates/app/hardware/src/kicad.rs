@@ -11,7 +11,7 @@ pub(crate) struct Kicad;
 const PROGRAM: &str = "kicad-cli";
 
 impl Kicad {
-    /// Looks for it. `None`: it is not installed, or is another version.
+    /// Finds KiCad. `None` if it is not installed or has another version.
     pub(crate) fn find() -> Result<Option<Self>> {
         let Ok(output) = Command::new(PROGRAM).arg("--version").output() else {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! One variant after the other: files, checks, fabrication files, mechanics, archive.
+//! Makes one variant after the other: files, checks, fabrication files, mechanics, archive.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::options::Options;
 use crate::variant::{Variant, wanted};
 use crate::{export, findings, mechanics, netlist, parts, release};
 
-/// All variants that the options ask for.
+/// Makes all variants that the options name.
 pub(crate) fn all(options: &Options) -> Result<()> {
     let parts = parts::read(&options.root.join("hardware/parts.toml"))?;
     let kicad = Kicad::find()?;
@@ -38,7 +38,7 @@ fn one(
     kicad: Option<&Kicad>,
 ) -> Result<()> {
     let board = Board::design(&variant.name, &variant.sensor, &variant.chip)?;
-    // What was there before is of another board.
+    // Existing files may be of another board.
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("removing what {} had", folder.display()))?;
     }
@@ -84,7 +84,7 @@ fn one(
 mod tests {
     use super::*;
 
-    /// The mechanics are tested with the geometries of what ships.
+    /// The mechanics are tested with the geometries of the shipped variants.
     #[test]
     fn the_mechanics_are_tested_with_these_boards() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");

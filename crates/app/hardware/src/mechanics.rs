@@ -1,4 +1,4 @@
-//! The mechanics around a board, made by a Python program of the checkout.
+//! The mechanics around a board, made by Python programs of the checkout.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -6,10 +6,11 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-/// The variable that names a Python interpreter with what the program imports.
+/// The environment variable that names a Python interpreter with the programs' packages.
 const PYTHON: &str = "TWINTAC_HARDWARE_PYTHON";
 
-/// Makes the parts, checks them, and draws the casting sheet, if an interpreter is named. What the checks find is an error.
+/// Makes and checks the parts, and draws the casting sheet, if an interpreter is named. A failed
+/// check is an error.
 pub(crate) fn make(root: &Path, geometry: &Path, out: &Path) -> Result<()> {
     let Some(python) = std::env::var_os(PYTHON) else {
         eprintln!("  skipped: mechanics ({PYTHON} names no Python interpreter)");
@@ -39,7 +40,7 @@ pub(crate) fn make(root: &Path, geometry: &Path, out: &Path) -> Result<()> {
     eprintln!("  mechanics: nothing found");
     match run("sheet.py", &[out.as_os_str()]) {
         Ok(()) => eprintln!("  casting sheet"),
-        // It has a picture.
+        // The casting sheet contains a rendered picture.
         Err(error) => eprintln!(
             "  skipped: casting sheet, which takes an OpenGL that draws without a display ({error:#})"
         ),

@@ -1,4 +1,4 @@
-//! The netlist that KiCad reads out of the schematic, compared with the description.
+//! Compares the netlist that KiCad reads from the schematic with the description.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,7 +9,7 @@ use twintac_board::TaxelWiring;
 
 use crate::kicad::Kicad;
 
-/// Each taxel's chip must be on its channel of its switch, and alone there.
+/// Checks that each taxel's chip is on its channel of its switch, and alone there.
 pub(crate) fn compare(kicad: &Kicad, project: &Path, name: &str, wiring: &[TaxelWiring]) -> Result<()> {
     let path = project.with_file_name("checks").join("netlist.xml");
     let out = std::path::absolute(&path)?;

@@ -1,27 +1,27 @@
-//! What the program is asked for.
+//! Command-line options.
 
 use std::path::PathBuf;
 
 use clap::Parser;
 
-/// Writes board project, geometry, parts list and, where `kicad-cli` 9 is installed, checked
-/// fabrication files.
+/// Writes the board project, geometry and parts list, and checked fabrication files if `kicad-cli`
+/// 9 is installed.
 #[derive(Parser)]
 #[command(name = "cargo xtask hardware")]
 pub(crate) struct Options {
-    /// The description of a sensor; left out: the three variants that ship
+    /// Description of a sensor; default: the three shipped variants
     #[arg(long)]
     pub(crate) sensor: Option<PathBuf>,
-    /// The barometer on the board, such as MS5837-30BA; left out: that of the description
+    /// Barometer on the board, such as MS5837-30BA; default: that of the description
     #[arg(long, requires = "sensor")]
     pub(crate) chip: Option<String>,
-    /// Where files are written: a folder for each variant
+    /// Folder to write to; each variant has a folder in it
     #[arg(long, default_value = "target/hardware")]
     pub(crate) out: PathBuf,
     /// Also write one archive for each variant
     #[arg(long)]
     pub(crate) release: bool,
-    /// The root of the checkout
+    /// Root of the checkout
     #[arg(long, default_value = ".", hide = true)]
     pub(crate) root: PathBuf,
 }

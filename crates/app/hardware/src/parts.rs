@@ -1,4 +1,4 @@
-//! The parts list: what the board needs, with what is known of prices.
+//! The parts list of a board, with known prices.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,10 +7,10 @@ use anyhow::{Context, Result};
 use serde::Deserialize;
 use twintac_board::Board;
 
-/// Numbers at which prices are asked for.
+/// Quantities for which the list has prices.
 const QUANTITIES: [u32; 3] = [1, 10, 50];
 
-/// What is known of parts, by the name that the board has for them.
+/// Known data of parts, by the names that boards use for them.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Known {
@@ -21,9 +21,9 @@ pub(crate) struct Known {
 #[serde(deny_unknown_fields)]
 struct Part {
     manufacturer: String,
-    /// What to order.
+    /// The order number.
     number: String,
-    /// What may stand in for it.
+    /// A replacement part.
     #[serde(default)]
     second_source: String,
     #[serde(default)]
@@ -36,7 +36,7 @@ struct Price {
     quantity: u32,
     amount: f64,
     currency: String,
-    /// Who said so.
+    /// Source of the price.
     source: String,
 }
 
@@ -59,7 +59,7 @@ const COLUMNS: [&str; 11] = [
     "price_source",
 ];
 
-/// The list as CSV. Prices that nobody knows stay empty.
+/// The list as CSV. Unknown prices stay empty.
 pub(crate) fn csv(board: &Board, known: &Known) -> Result<Vec<u8>> {
     let mut list = csv::Writer::from_writer(Vec::new());
     list.write_record(COLUMNS)?;

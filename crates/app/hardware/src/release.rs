@@ -1,5 +1,5 @@
-//! One archive for each variant: all that a maker of boards and a printer need, with sums of each
-//! file.
+//! One archive for each variant, with all that a board manufacturer and a 3D printer need, and
+//! checksums of all files.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -11,15 +11,15 @@ use twintac_store::{Digest, write_file};
 use crate::archive;
 use crate::variant::Variant;
 
-/// Folders that are not for the archive.
+/// Folders that are not in the archive.
 const LEFT_OUT: [&str; 2] = ["checks", "pictures"];
 
-/// The archive of a variant: beside its folder.
+/// The path of a variant's archive, beside its folder.
 pub(crate) fn path(folder: &Path, variant: &Variant) -> PathBuf {
     folder.with_file_name(format!("{}.zip", variant.name))
 }
 
-/// Writes the archive of all that is in the folder.
+/// Writes the archive of a folder.
 pub(crate) fn write(path: &Path, folder: &Path, variant: &Variant, is_confirmed: bool) -> Result<()> {
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
     collect(folder, folder, &mut files)?;

@@ -1,4 +1,4 @@
-//! Which hardware is made: a name, a description and a chip.
+//! Variants of hardware: a name, a description and a chip.
 
 use std::path::Path;
 
@@ -8,23 +8,23 @@ use twintac_store::Digest;
 
 use crate::options::Options;
 
-/// A description to be made hardware of.
+/// A description from which hardware is made.
 pub(crate) struct Variant {
     pub(crate) name: String,
     pub(crate) sensor: Sensor,
     pub(crate) chip: String,
-    /// Of the description's file.
+    /// SHA-256 of the description's file.
     pub(crate) sha256: String,
 }
 
-/// Name, description and chip of what ships.
+/// Name, description and chip of the shipped variants.
 const SHIPPED: [(&str, &str, &str); 3] = [
     ("phystac-ms5837", "sensors/phystac.toml", "MS5837-30BA"),
     ("fingertip", "sensors/phystac-tip.toml", "MS5837-30BA"),
     ("phystac", "sensors/phystac.toml", "CPS135B"),
 ];
 
-/// What the options ask for.
+/// The variants that the options name.
 pub(crate) fn wanted(options: &Options) -> Result<Vec<Variant>> {
     let Some(path) = &options.sensor else {
         return shipped(&options.root);
@@ -32,7 +32,7 @@ pub(crate) fn wanted(options: &Options) -> Result<Vec<Variant>> {
     Ok(vec![read(path, None, options.chip.as_deref())?])
 }
 
-/// All that ships.
+/// All shipped variants.
 pub(crate) fn shipped(root: &Path) -> Result<Vec<Variant>> {
     SHIPPED
         .into_iter()

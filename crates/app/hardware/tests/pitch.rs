@@ -1,4 +1,5 @@
-//! One number of a description changes board, prints and simulated gel together: the pitch.
+//! A change of one number of a description, the pitch, changes board, printed parts and simulated
+//! gel alike.
 
 #![allow(clippy::print_stderr)] // says what is skipped
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
@@ -15,7 +16,8 @@ use twintac_simulate::{Gel, PressPlace, SimulateSettings};
 
 const PITCH_MM: f64 = 9.0;
 
-/// PhysTac with a pitch of 9 mm: its ports 1.125 times as far from the middle, the gel's sides as far beyond them as before.
+/// PhysTac with a pitch of 9 mm: its ports are 1.125 times as far from the middle, and the gel's
+/// sides are as far beyond them as before.
 fn wider() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
     let mut text = std::fs::read_to_string(root.join("sensors/phystac.toml")).unwrap();
@@ -72,7 +74,7 @@ fn board_prints_and_mesh_follow_the_pitch() {
     }
     assert_eq!(ports.len(), sensor.taxels.len());
 
-    // Barometers on the board, as their assembler is told.
+    // Barometers on the board, by the placement file of the assembler.
     let placement = out.join("fabrication/placement.csv");
     if placement.exists() {
         let mut table = csv::Reader::from_path(placement).unwrap();

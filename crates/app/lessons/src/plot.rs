@@ -1,4 +1,4 @@
-//! The picture of a judgement.
+//! The plot of an evaluation.
 
 use twintac_fast::GroupErrors;
 use twintac_plot::{Bar, Bars, Ink};
@@ -6,19 +6,20 @@ use twintac_plot::{Bar, Bars, Ink};
 use crate::train::FastResult;
 
 impl FastResult {
-    /// What the exams press with, in words.
+    /// What presses in the test presses, in words.
     #[must_use]
     pub fn exams_name(&self) -> &'static str {
         match self.own_indenters {
-            true => "own indenters, not taught",
-            false => "shapes never taught",
+            true => "own indenters, held out",
+            false => "held-out shapes",
         }
     }
 
-    /// Errors of the taxel that reads most: of exams, by shape and by depth, and of slides.
+    /// Errors of the taxel that reads most: for test presses by shape and by depth, and for sliding
+    /// ones.
     pub(super) fn plot(&self) -> Bars {
         let mut bars = Vec::new();
-        // A group without frames has no errors to draw.
+        // A group without frames has no errors to plot.
         let mut bar = |name: String, errors: &Option<GroupErrors>, ink: Ink| {
             bars.extend(errors.map(|errors| Bar {
                 name,
@@ -31,7 +32,7 @@ impl FastResult {
                 ink,
             }));
         };
-        let like_lessons = "like lessons, not taught";
+        let like_lessons = "held-out presses";
         bar(like_lessons.into(), &self.held_out.overall, Ink::Muted);
         bar(self.exams_name().into(), &self.exams.overall, Ink::Twin);
         for (shape, errors) in &self.exams.by_shape {
@@ -44,10 +45,11 @@ impl FastResult {
         bar("sliding and tilting".into(), &self.slides.overall, Ink::Twin);
         Bars {
             title: format!(
-                "{}: fast gel against solved gel, {} data",
+                "{}: surrogate against FEM solution, {} data",
                 self.sensor, self.provenance
             ),
-            x_label: "mean error of the taxel that reads most, % of the press's largest reading".into(),
+            x_label: "mean error of the taxel with the largest reading, % of the press's largest reading"
+                .into(),
             bars,
         }
     }

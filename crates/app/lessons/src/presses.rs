@@ -1,4 +1,5 @@
-//! Presses of the solved gel, each kept in a file, so that a killed training goes on.
+//! Presses solved by finite elements. Each is kept in a file, so that a training that was killed
+//! continues.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -7,7 +8,7 @@ use twintac_store::{Keyed, Recipe, Store};
 use twintac_teach::{Strange, Teacher};
 use twintac_work::{At, Progress, Work, WorkError};
 
-/// What a press is drawn for.
+/// The purpose of a press.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum PressKind {
@@ -20,7 +21,7 @@ pub(super) enum PressKind {
 }
 
 impl PressKind {
-    /// What is said of the work.
+    /// The name in progress reports and file names.
     fn name(self) -> String {
         match self {
             Self::Lesson | Self::OwnLesson => "lessons".to_owned(),
@@ -31,7 +32,7 @@ impl PressKind {
     }
 }
 
-/// The presses of a teacher.
+/// The presses that a `Teacher` draws, and where they are kept.
 pub(super) struct Solved<'a> {
     /// It follows from the sensor's description.
     pub(super) teacher: &'a Keyed<Teacher>,
@@ -40,7 +41,7 @@ pub(super) struct Solved<'a> {
     pub(super) progress: &'a dyn Progress,
 }
 
-/// One of them: a press is drawn from its seed and number, and solved.
+/// One press: drawn from its seed and number, and solved.
 #[derive(Serialize)]
 struct SolvedPress<'a> {
     teacher: &'a Keyed<Teacher>,
@@ -77,7 +78,7 @@ impl Recipe for SolvedPress<'_> {
 }
 
 impl Solved<'_> {
-    /// So many presses of a kind, from their files or solved now.
+    /// The first `n` presses of a kind, from their files or solved now.
     pub(super) fn presses(&self, kind: PressKind, n: u64) -> Result<Vec<Lesson>, WorkError> {
         let work = Work::start(self.progress, &kind.name(), n as usize);
         let presses = (0..n as usize).into_par_iter().with_max_len(1).map(|number| {

@@ -1,4 +1,4 @@
-//! Whether a fast gel tells contacts that it was not taught from those that it was.
+//! Evaluation of the OOD score: does the surrogate detect contacts that it was not trained for?
 
 use std::collections::BTreeMap;
 
@@ -11,30 +11,33 @@ use twintac_work::WorkError;
 
 use crate::presses::{PressKind, Solved};
 
-/// How well contacts unlike all that was taught are told from presses like lessons.
+/// How well out-of-distribution (OOD) contacts are detected, against held-out presses like those of
+/// training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Told {
-    /// Part of the moments of presses like lessons whose novelty is above 1, %; `None` without any.
+    /// Fraction of the frames of held-out presses whose OOD score is above 1, %: false positives.
+    /// `None` without such frames.
     pub familiar_flagged_percent: Option<f64>,
-    /// Each kind of strange contact.
+    /// Each kind of OOD contact.
     pub kinds: BTreeMap<String, ToldKind>,
-    /// How often any of them has a higher novelty than a familiar one, %: the area under the
-    /// receiver operating characteristic. `None` without any.
+    /// Area under the receiver operating characteristic (AUROC) of all kinds together, %: the
+    /// probability that an OOD frame has a higher score than a held-out one. `None` without OOD
+    /// frames.
     pub auroc_percent: Option<f64>,
 }
 
-/// How well one kind is told; `None` where no moment is of it.
+/// How well one kind is detected. A field is `None` if no frame is of that kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ToldKind {
-    /// Part of the moments whose novelty is above 1, %.
+    /// Fraction of the frames whose OOD score is above 1, %.
     pub flagged_percent: Option<f64>,
-    /// How often such a contact has a higher novelty than a familiar one, %.
+    /// AUROC against held-out presses, %.
     pub auroc_percent: Option<f64>,
-    /// Errors there.
+    /// Errors of pressures and force on these frames.
     pub errors: Option<GroupErrors>,
 }
 
-/// Presses unlike all that is taught, kind by kind; so many of each.
+/// Out-of-distribution presses, `n_of_kind` of each kind.
 pub(super) fn strange_presses(
     solved: &Solved<'_>,
     n_of_kind: u64,
@@ -44,10 +47,10 @@ pub(super) fn strange_presses(
 }
 
 impl Told {
-    /// Judges on presses that were not taught.
+    /// Evaluates the OOD score on held-out and on OOD presses.
     ///
     /// # Errors
-    /// A shape that can't be.
+    /// An impossible shape.
     pub(super) fn of(
         gel: &FastGel,
         familiar: &[Lesson],
@@ -75,7 +78,7 @@ impl Told {
     }
 }
 
-/// Of all moments.
+/// The OOD scores of all frames.
 fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, ShapeError> {
     let mut all = Vec::new();
     for press in presses {

@@ -1,4 +1,4 @@
-//! A fast twin, from a sensor's description alone: presses of the solved gel to learn from, training, and presses to be judged on.
+//! Trains and evaluates a surrogate from a sensor's description alone.
 
 use std::path::Path;
 
@@ -15,32 +15,34 @@ use twintac_work::{Caller, Work, WorkError};
 use crate::presses::{PressKind, Solved};
 use crate::strange::{Told, strange_presses};
 
-/// One lesson of so many is not taught but judged on, and one of so many where lessons are few: how
-/// far off the gel is where few lessons pressed is known from them.
+/// One training press of this many is held out for evaluation (the second number if there are few):
+/// the errors on them show how good the surrogate is where few presses trained it.
 const ONE_HELD_OUT_OF: usize = 20;
 const ONE_HELD_OUT_OF_FEW: usize = 5;
 
-/// Fewer lessons than that are few.
+/// Fewer training presses than this are few.
 const FEW_LESSONS: usize = 500;
 
-/// Held out is what has edges at most so much longer than the shortest of all.
+/// A press can be held out if its mesh's edges are at most this many times as long as the shortest
+/// of all.
 const HELD_OUT_LONGER: f64 = 1.2;
 
-/// How much is learned from.
+/// Numbers of presses, and settings of the training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FastSettings {
-    /// Presses of shapes that are taught.
+    /// Training presses.
     pub n_lessons: u64,
-    /// Presses of shapes that are not.
+    /// Test presses, straight down, of shapes that no training press has.
     pub n_exams: u64,
-    /// Presses of such shapes that slide and tilt.
+    /// Test presses of such shapes that slide and tilt.
     pub n_slides: u64,
-    /// Presses of each kind that is unlike all that is taught.
+    /// Out-of-distribution test presses of each kind.
     pub n_strange: u64,
-    /// Whether presses are those of the sensor's own indenters, upright and near its ports: for the twin of a bench.
+    /// Whether all presses use the sensor's own indenters, upright and near its ports: for the twin
+    /// of a bench.
     pub own_indenters: bool,
-    /// How the networks are trained.
+    /// Settings of the networks' training.
     pub train: TrainSettings,
 }
 
@@ -57,31 +59,35 @@ impl Default for FastSettings {
     }
 }
 
-/// What became of it.
+/// The result of a training: `judgement.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FastResult {
-    /// The sensor.
+    /// The sensor's name.
     pub sensor: String,
-    /// Where the numbers come from: both gels are simulated.
+    /// Always `simulated`: the surrogate and the FEM solution that it is compared with.
     pub provenance: Provenance,
-    /// Whether all presses are those of the sensor's own indenters.
+    /// Whether all presses use the sensor's own indenters.
     pub own_indenters: bool,
-    /// Presses that were taught.
+    /// Number of presses that the surrogate was trained on.
     pub n_taught: usize,
-    /// Errors against the solved gel on presses like those that were taught.
+    /// Errors against the FEM solution on held-out presses like those of training.
     pub held_out: Judgement,
-    /// Errors against the solved gel on exams, pressed straight down: of shapes that no lesson has, or with the sensor's own indenters.
+    /// Errors against the FEM solution on test presses straight down: of shapes that no training
+    /// press has, or of the sensor's own indenters.
     pub exams: Judgement,
-    /// The same where shapes that no lesson has slide and tilt; no frames for a sensor's own indenters.
+    /// Errors on test presses that slide and tilt; no frames if all presses use the sensor's own
+    /// indenters.
     pub slides: Judgement,
-    /// Whether contacts unlike all that was taught are told; nothing where the sensor's own indenters were pressed.
+    /// Evaluation of the OOD score; `None` if all presses use the sensor's own indenters.
     pub strange: Option<Told>,
 }
 
-/// Teaches and judges a fast twin in a folder. Presses that are there already are not solved again.
+/// Trains and evaluates a surrogate in a folder. Presses that are in the folder already are not
+/// solved again.
 ///
 /// # Errors
-/// A folder in which another process works, a gel that can't be pressed, files that cannot be written.
+/// A folder in which another process works; a gel that cannot be pressed; files that cannot be
+/// written.
 pub fn train_fast(
     sensor: &SensorFile,
     folder: &Path,
@@ -125,7 +131,8 @@ pub fn train_fast(
     };
     let longest_held_out_mm = HELD_OUT_LONGER * edges_mm.fold(f64::INFINITY, f64::min);
     for (number, lesson) in lessons.into_iter().enumerate() {
-        // On a coarse mesh the solved gel reads too little: nobody is judged by it.
+        // On a coarse mesh the FEM solution reads too little, so such presses are not used for
+        // evaluation.
         let is_held_out = number % one_held_out_of == 0 && lesson.edge_mm < longest_held_out_mm;
         if is_held_out { &mut held_out } else { &mut taught }.push(lesson);
     }

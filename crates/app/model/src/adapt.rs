@@ -1,4 +1,4 @@
-//! A model's folder made from another sensor's model and a few presses.
+//! Adapts a model to another sensor with a few presses, and saves it in a new folder.
 
 use std::path::{Path, PathBuf};
 
@@ -13,60 +13,60 @@ use crate::figures::{Figures, TwinFigures, names};
 use crate::new_gel::NewGel;
 use crate::press_checksum::press_checksum;
 
-/// What to adapt a model with.
+/// The inputs of an adaptation.
 #[derive(Clone, Debug)]
 pub struct AdaptationPlan<'a> {
     /// The folder of the model to start from.
     pub model: &'a Path,
-    /// The new sensor, where it is not as the model's description says.
+    /// The new sensor, if it differs from the model's description.
     pub sensor: Option<&'a SensorFile>,
     /// Presses of the new sensor.
     pub recording: &'a Recording,
-    /// How many of them to adapt with; the rest judge.
+    /// Number of presses to adapt with. The rest are test presses.
     pub presses: usize,
-    /// Seed of what choosing them leaves to chance.
+    /// Seed of the random part of their choice.
     pub seed: u64,
     /// The folder to write to.
     pub out: &'a Path,
 }
 
-/// What was adapted, and how well it does.
+/// The result of an adaptation, with its errors: `adaptation.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct AdaptedModel {
-    /// Where the new sensor's readings come from.
+    /// Provenance of the new sensor's readings.
     pub provenance: Provenance,
-    /// Where those come from that the model was trained with.
+    /// Provenance of the readings that the original model was trained on.
     pub trained_on: Provenance,
     /// The folder of the adapted model.
     pub model: PathBuf,
     /// Names of the taxels, in the order of the adaptation's values.
     pub taxels: Vec<String>,
-    /// Taxels left out of the headline.
+    /// Taxels excluded from the headline figure.
     pub taxels_left_out: Vec<String>,
-    /// Which model it is.
+    /// The variant of the model.
     pub variant: String,
-    /// Names of the presses that were adapted with, in the order in which they were chosen.
+    /// Names of the presses that were used, in the order in which they were chosen.
     pub adapted_with: Vec<String>,
-    /// What was adapted, and how sure it is.
+    /// The adapted values, and their uncertainties.
     pub adaptation: Adaptation,
-    /// Gains as they were learned on the other sensor; `[n_taxels]`.
+    /// Gains of the original model; `[n_taxels]`.
     pub learned_gain: Vec<f64>,
-    /// How many presses judged: those that were not adapted with.
+    /// Number of test presses: those that were not used to adapt.
     pub judged_presses: usize,
-    /// Errors on these; `None` if there were none.
+    /// Errors on the test presses; `None` if there were none.
     pub twin: Option<TwinFigures>,
-    /// Errors on the same presses of the twin as it was learned.
+    /// Errors of the original twin on the same presses.
     pub as_learned: Option<Figures>,
     /// What the figures mean.
     pub definition: String,
 }
 
-/// Adapts a model to another sensor. Leaves its folder in `model` of the plan's folder, and what was found in `adaptation.json`; `depth_tables` has
-/// what was simulated.
+/// Adapts a model to another sensor. The plan's folder gets the adapted model in `model`, the
+/// result in `adaptation.json`, and the simulated tables in `depth_tables`.
 ///
 /// # Errors
-/// A model that cannot be read, that reads other taxels, that has no gains, or that some of the presses taught; a place that cannot be pressed;
-/// a file that cannot be written.
+/// A model that cannot be read, that reads other taxels, that has no gains, or that was trained on
+/// some of the presses; a location that cannot be pressed; a file that cannot be written.
 pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<AdaptedModel, WorkError> {
     let model = Model::load(plan.model)?;
     let (recording, record) = (plan.recording, &model.record);

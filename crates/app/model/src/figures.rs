@@ -1,11 +1,12 @@
-//! Errors as programs read them.
+//! Errors in the form that programs read.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use digitac::{Errors, Evaluation, Score};
 use serde::{Deserialize, Serialize};
 
-/// Errors in % of the largest reading of the file that they belong to. A mean over nothing is `None`: null in files.
+/// Errors in % of the largest reading of the file that they belong to. A mean without frames is
+/// `None`: null in files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// Mean absolute error of the nearest taxel while in contact.
@@ -14,7 +15,7 @@ pub struct Figures {
     pub all_percent: Option<f64>,
     /// Mean absolute error of the presses' largest readings.
     pub peak_percent: Option<f64>,
-    /// Frames behind the headline.
+    /// Number of frames of the headline figure.
     pub frames_in_contact: usize,
 }
 
@@ -29,7 +30,7 @@ impl From<&Errors> for Figures {
     }
 }
 
-/// The twin's figures, taken apart.
+/// The twin's errors, overall and in parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TwinFigures {
     /// Overall.
@@ -39,15 +40,16 @@ pub struct TwinFigures {
     pub by_file: BTreeMap<String, Figures>,
     /// By taxel.
     pub by_taxel: BTreeMap<String, Figures>,
-    /// Frames deeper than the simulation reached. What it ends with stands for them, straight on; they are scored all the same.
+    /// Number of frames deeper than the simulation reached. The last simulated state, continued
+    /// linearly, stands for them; they are scored as well.
     pub frames_not_simulated: usize,
-    /// All frames.
+    /// Number of all frames.
     #[serde(default)]
     pub frames: usize,
 }
 
 impl TwinFigures {
-    /// The figures of a score; its taxels are called so.
+    /// The figures of a score. `taxels` are the names of its taxels.
     #[must_use]
     pub fn new(score: &Score, taxels: &[String]) -> Self {
         Self {
@@ -68,14 +70,15 @@ impl TwinFigures {
     }
 }
 
-/// What the twin is compared with, on the same presses.
+/// Errors of the baselines, on the same presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BaselineFigures {
-    /// Nothing is ever felt.
+    /// Predicting zero.
     pub zero: Figures,
-    /// A polynomial of depth and place, fitted to the twin's training presses.
+    /// Static polynomial of depth and location, fitted to the twin's training presses.
     pub polynomial: Option<Figures>,
-    /// A power of depth times a function of distance, and barometers as the twin has them, fitted to the same presses.
+    /// Parametric baseline: a power of depth times a function of distance, with the twin's model of
+    /// the barometers, fitted to the same presses.
     pub kernel: Option<Figures>,
 }
 

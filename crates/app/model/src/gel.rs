@@ -1,4 +1,4 @@
-//! A trained twin's folder, and the gel that it was trained with.
+//! The gel that a trained twin was trained with.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,13 +10,13 @@ use twintac_simulate::{Gel, SimulateSettings};
 use twintac_store::StoreError;
 use twintac_work::{At, WorkError};
 
-/// The gel of a model's sensor, simulated as it was for training.
+/// The gel of a model's sensor, with the simulation settings of the training.
 pub fn gel_of(model: &Model, folder: &Path) -> Result<Gel, WorkError> {
     let sensor = SensorFile::parse(&folder.join("twin.json"), &model.record.sensor)?;
     gel_like(model, folder, &sensor)
 }
 
-/// The gel of another sensor, simulated in the same way.
+/// The gel of another sensor, with the same simulation settings.
 pub fn gel_like(model: &Model, folder: &Path, sensor: &SensorFile) -> Result<Gel, WorkError> {
     let settings: SimulateSettings =
         serde_json::from_value(model.record.simulation.clone()).map_err(|source| StoreError::Damaged {

@@ -1,7 +1,9 @@
-//! How far sensors of a kind are from perfect, from what was found on one of them: a file for [`Imperfection`].
+//! Estimates the sensor variation of a kind of sensors from what was measured on one of them: a
+//! file for [`Imperfection`].
 //!
-//! A trained model tells how its taxels and mountings differ, recordings what the read-out does. What neither tells is left out, with the reason: nothing
-//! is guessed. Every width says where it comes from and on how many values it rests.
+//! A trained model shows how its taxels and mountings differ; recordings show the errors of the
+//! read-out. What neither shows is left out, with the reason: nothing is guessed. For every width
+//! the file says its source and the number of values.
 
 use std::path::Path;
 
@@ -17,7 +19,8 @@ use twintac_work::WorkError;
 use crate::taxels::left_out;
 use crate::unseen::refuse_other_sensor;
 
-/// What imperfections are found from. Without a model or without recordings, what they would tell is left out.
+/// The sources of the estimate. Without a model or without recordings, the fields that they would
+/// give are left out.
 #[derive(Clone, Copy, Debug)]
 pub struct ImperfectionSources<'a> {
     /// The sensor's description.
@@ -26,24 +29,24 @@ pub struct ImperfectionSources<'a> {
     pub model: Option<&'a Path>,
     /// Recordings of the sensor.
     pub recorded: Option<&'a Recorded>,
-    /// The command that made the file, for its head.
+    /// The command that makes the file, for its first line.
     pub command: &'a str,
 }
 
-/// Imperfections that were found, and the file of them.
+/// The estimated sensor variation, and the text of its file.
 #[derive(Clone, Debug)]
 pub struct FoundImperfection {
-    /// The widths; zero where none was found.
+    /// The widths; zero for those that were left out.
     pub imperfection: Imperfection,
-    /// The file's text: every width with a comment.
+    /// The file's text: every width has a comment.
     pub text: String,
-    /// Names of the fields that were found.
+    /// Names of the fields that were estimated.
     pub found: Vec<&'static str>,
     /// Names of the fields that were left out.
     pub left_out: Vec<&'static str>,
 }
 
-/// The description that a model was trained with.
+/// The sensor's description that a model was trained with.
 ///
 /// # Errors
 /// A model that cannot be read.
@@ -55,14 +58,15 @@ pub fn sensor_of_model(folder: &Path) -> Result<SensorFile, WorkError> {
     )?)
 }
 
-/// Finds the imperfections of sensors of a kind.
+/// Estimates the variation of sensors of a kind.
 ///
 /// # Errors
-/// Neither a model nor recordings; a model that cannot be read; recordings that are of another sensor than description and model.
+/// Neither a model nor recordings; a model that cannot be read; recordings that are of another
+/// sensor than description and model.
 pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImperfection, WorkError> {
     if sources.model.is_none() && sources.recorded.is_none() {
         return Err(WorkError::Input(
-            "there is nothing to find imperfections from; give a model, recordings, or both".to_owned(),
+            "there is no source for the sensor variation; give a model, recordings, or both".to_owned(),
         ));
     }
     let sensor = &sources.sensor.sensor;
@@ -93,8 +97,8 @@ pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImper
         has_memory,
     ));
     let text = text(&sensor.name, sources.command, &lines);
-    // What is written can be read: the same rules as for a file that a person wrote.
-    let imperfection = Imperfection::parse("the imperfections that were found", &text)?;
+    // The text is parsed by the same rules as a file that a person wrote.
+    let imperfection = Imperfection::parse("the estimated sensor variation", &text)?;
     let names = |is_found: bool| {
         let lines = lines.iter().filter(|line| line.said.is_ok() == is_found);
         lines.map(|line: &Line| line.field).collect::<Vec<_>>()
@@ -107,7 +111,7 @@ pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImper
     })
 }
 
-/// A description beside a model is that of the model's sensor: by its taxels, and by their places.
+/// Refuses a description whose taxels differ from those of the model, by name or position.
 fn refuse_other_gel(of_model: &SensorFile, described: &SensorFile, folder: &Path) -> Result<(), WorkError> {
     let taxels = |of: &SensorFile| {
         let taxels = of.sensor.taxels.iter();
@@ -118,7 +122,7 @@ fn refuse_other_gel(of_model: &SensorFile, described: &SensorFile, folder: &Path
         return Ok(());
     }
     Err(WorkError::Input(format!(
-        "the model in {} is of the sensor `{}`, whose taxels are others than those of `{}`: leave --sensor out",
+        "the model in {} is of the sensor `{}`, whose taxels are not those of `{}`: leave --sensor out",
         folder.display(),
         of_model.sensor.name,
         described.sensor.name

@@ -1,4 +1,4 @@
-//! Another gel, pressed and simulated, before a twin that does not know it yet.
+//! Another gel's recorded presses, simulated for a twin that was not trained on them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -18,30 +18,32 @@ use crate::gel::{gel_like, gel_of};
 use crate::taxels::{left_out, ports_mm};
 use crate::unseen::{Pressed, refuse_known, refuse_other_sensor, simulate};
 
-/// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
+/// Ratio of the smallest expected stiffness to the fitted one. Presses of prescribed force are
+/// simulated deep enough for it.
 const SOFTEST: f64 = 0.7;
 
-/// Another gel, pressed and simulated, before a twin that does not know it yet.
+/// Another gel's recorded presses, simulated for a twin that was not trained on them.
 pub struct NewGel<'a> {
     recording: &'a Recording,
     twin: &'a Twin,
-    /// The bench as it was learned, with the ports where this gel's sensor has them.
+    /// The fitted bench of the training, with the port positions of this gel's sensor.
     bench: BenchEstimate,
-    /// Taxels whose readings are not to be trusted, by index.
+    /// Indices of the excluded taxels (`doubtful` in the description).
     pub left_out: BTreeSet<usize>,
     places: Places,
     tables: Vec<DepthTable>,
-    /// Nobody else works in the folder meanwhile.
+    /// Keeps other processes out of the folder.
     _owner: Owner,
 }
 
 impl<'a> NewGel<'a> {
-    /// Simulates the places of a recording; tables over depth are kept in `depth_tables` of the folder `out`. `sensor` describes the gel where it is not as the
-    /// model's description says.
+    /// Simulates the locations of a recording. Tables over depth are kept in `depth_tables` of the
+    /// folder `out`. `sensor` describes the gel if it differs from the model's description.
     ///
     /// # Errors
-    /// The paper's network, which has no gains; recordings of another sensor, or of presses that taught the model; a folder in which another process works; a
-    /// place that cannot be pressed.
+    /// The paper's network, which has no gains; recordings of another sensor, or of presses that
+    /// the model was trained on; a folder in which another process works; a location that cannot be
+    /// pressed.
     pub fn open(
         (model, model_folder): (&'a Model, &Path),
         sensor: Option<&SensorFile>,
@@ -71,7 +73,7 @@ impl<'a> NewGel<'a> {
             ..bench.clone()
         };
         let (left_out, progress) = (left_out(gel.sensor()), &*caller.progress);
-        // A folder is made only for what is not refused.
+        // No folder is made for inputs that are refused.
         let owner = Owner::of(out)?;
         let store = DepthTableStore::of(gel, progress)?.kept_in(&out.join("depth_tables"), &caller.program);
         let (places, tables) = simulate(&store, recording, &softer, progress)?;
@@ -86,7 +88,7 @@ impl<'a> NewGel<'a> {
         })
     }
 
-    /// The presses to adapt with.
+    /// Chooses presses to adapt with, as indices.
     ///
     /// # Errors
     /// Fewer candidates than presses.
@@ -94,7 +96,7 @@ impl<'a> NewGel<'a> {
         Ok(choose_presses(&self.sensor(), candidates, n_presses, seed)?)
     }
 
-    /// The twin and its bench, adapted with some presses.
+    /// The twin and its bench, adapted with these presses.
     ///
     /// # Errors
     /// Presses that do not touch the gel.
@@ -113,15 +115,15 @@ impl<'a> NewGel<'a> {
         }
     }
 
-    /// The errors of some presses.
+    /// The errors of an adapted twin on these presses.
     ///
     /// # Errors
-    /// Presses that are scored by no frame.
+    /// Presses of which no frame is scored.
     pub fn judge(&self, adapted: &Adapted, scored: &[usize]) -> Result<Evaluation, WorkError> {
         self.judge_on(&adapted.twin, &adapted.bench, scored)
     }
 
-    /// The errors of some presses if the twin stays as it was learned.
+    /// The errors of the original twin on these presses.
     ///
     /// # Errors
     /// Those of [`judge`](Self::judge).

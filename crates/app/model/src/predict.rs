@@ -1,4 +1,4 @@
-//! What a sensor would read along a path or a protocol, by its trained twin.
+//! Predicts the readings of a sensor along a path or a protocol, by its trained twin.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -19,40 +19,42 @@ use crate::gel::gel_of;
 
 /// A trained twin, and the gel of its sensor.
 ///
-/// The bench is as it was found at training. An indenter goes deeper than poses say by the contact height of its mounting, or by the median of all
-/// where the recordings have no mounting of its name. Ports are where they were found, and a fitted tip keeps its radius and form. An indenter that was
-/// added is as described, at the median height. The gel's stiffness over the simulated one counts where forces are prescribed.
+/// The bench is as fitted in training. The true depth exceeds that of the poses by the contact
+/// height of the indenter's mounting, or by the median of all contact heights if the recordings
+/// have no mounting of that name. Ports have their fitted positions, and a fitted tip keeps its
+/// radius and form. An added indenter is as described, at the median height. The ratio of the gel's
+/// stiffness to the simulated one counts where forces are prescribed.
 pub struct Predictor {
     model: Model,
     gel: Gel,
-    /// The indenter that was added.
+    /// The name of the added indenter, if there is one.
     added: Option<String>,
-    /// What temperature adds to each taxel's readings, kPa; empty for nothing.
+    /// Drift of each taxel's readings with temperature, kPa; empty for none.
     drift_kpa: Vec<f64>,
 }
 
-/// What a twin would read.
+/// The predicted readings.
 #[derive(Clone, Debug, Serialize)]
 pub struct Predicted {
     /// Always [`Provenance::Simulated`].
     pub provenance: Provenance,
     /// The sensor's name.
     pub sensor: String,
-    /// Which model the twin is.
+    /// The variant of the twin.
     pub variant: Variant,
-    /// Where the recordings come from that it was trained with.
+    /// Provenance of the recordings that it was trained on.
     pub trained_on: Provenance,
     /// Names of the taxels, in the order of every row of readings.
     pub taxels: Vec<String>,
-    /// The presses in order; a path is one.
+    /// The presses in order; a path counts as one.
     pub presses: Vec<Prediction>,
-    /// Why a path ends before it should; `None` if it does not.
+    /// Why a path ends early; `None` if it does not.
     pub failure: Option<String>,
 }
 
 impl Predictor {
-    /// Opens a model's folder. `indenter` describes a shape that the sensor's description does not have, or has otherwise (TOML, see
-    /// [`IndenterFile`]).
+    /// Opens a model's folder. `indenter` describes an indenter that is added to the sensor's
+    /// description or replaces one of its name (TOML, see [`IndenterFile`]).
     ///
     /// # Errors
     /// A folder that holds no twin, or a damaged one; an indenter that is wrong.
@@ -83,15 +85,16 @@ impl Predictor {
         }
     }
 
-    /// What a sensor reads whose chips are so much warmer than when its zero was taken, K; below zero if they are colder.
+    /// Predicts for chips that are `warmer_k` warmer than when their zeros were taken, K; negative
+    /// if they are colder.
     ///
     /// # Errors
-    /// A model that does not know how its zeros move with temperature.
+    /// A model without temperature coefficients of its zeros.
     pub fn warmer(mut self, warmer_k: f64) -> Result<Self, WorkError> {
         let record = &self.model.record;
         let Some(temperature) = &record.temperature else {
             return Err(WorkError::Input(
-                "the model does not know how its zeros move with temperature; train it with `--temperature`, which has what `twintac characterize` found"
+                "the model has no temperature coefficients of its zeros; train it with `--temperature` and the file of `twintac characterize`"
                     .to_owned(),
             ));
         };
@@ -104,7 +107,7 @@ impl Predictor {
         Ok(self)
     }
 
-    /// Takes the twin along the path that a TOML file describes, as [`along`](Self::along).
+    /// Predicts along the path that a TOML file describes, as [`along`](Self::along).
     ///
     /// # Errors
     /// A file that cannot be read or is wrong; those of [`along`](Self::along).
@@ -113,10 +116,11 @@ impl Predictor {
         self.along(path, progress).at(|| file.display().to_string())
     }
 
-    /// Takes the twin along a path: the gel is solved frame by frame, sliding and tilting included, and the twin stepped with what reaches its ports. Points of
-    /// the path are not read.
+    /// Predicts along a path: the gel is solved frame by frame, sliding and tilting included, and
+    /// the twin is stepped with the pressures at its ports. Points of the path are not read.
     ///
-    /// The gel answers at once, as it does in the tables that the twin was trained with: what it does over time, the twin has learned.
+    /// The solved gel is elastic, as in the tables that the twin was trained with: the twin has
+    /// learned the behaviour over time.
     ///
     /// # Errors
     /// An indenter that the sensor does not have; a path that misses the gel.
@@ -155,7 +159,7 @@ impl Predictor {
         Ok(self.predicted(vec![along], followed.failure))
     }
 
-    /// Where and with what the gel is touched along a path; `[n_frames]`.
+    /// The contact of each frame: where and with what the gel is touched; `[n_frames]`.
     fn contacts(
         &self,
         shape: &Shape,
@@ -179,7 +183,7 @@ impl Predictor {
         Ok(contacts)
     }
 
-    /// Steps the twin along what the gel did.
+    /// Steps the twin along the gel's response.
     fn read_along(
         &self,
         path: &PressPath,
@@ -230,23 +234,23 @@ impl Predictor {
         }
     }
 
-    /// Takes the twin along the presses of a protocol, each from rest. The seed decides what the protocol leaves to chance. Weights that it
-    /// puts on the gel are left out, and said to be.
+    /// Predicts the presses of a protocol, each from rest. The seed decides what the protocol draws
+    /// at random. Weights of the protocol are left out, and a note says so.
     ///
     /// # Errors
-    /// A file that cannot be read or is wrong, or has no presses; indenters or taxels that the sensor does not have; a place that cannot be
-    /// pressed.
+    /// A file that cannot be read or is wrong, or has no presses; indenters or taxels that the
+    /// sensor does not have; a location that cannot be pressed.
     pub fn press(&self, protocol: &Path, seed: u64, progress: &dyn Progress) -> Result<Predicted, WorkError> {
         let sensor = self.gel.sensor();
         let planned = Planned::read(protocol, sensor, seed)?;
         if planned.presses.is_empty() {
             return Err(WorkError::Input(format!(
-                "{}: has no presses; give it a part, weights alone are not predicted",
+                "{}: has no presses; give it a part, since weights are not predicted",
                 protocol.display()
             )));
         }
         if !planned.loads.is_empty() {
-            progress.note("the protocol's weights are left out: presses alone are predicted");
+            progress.note("the protocol's weights are left out: only presses are predicted");
         }
         let work = Work::start(progress, "simulating", 0);
         let store = DepthTableStore::of(self.gel.clone(), progress)?;
@@ -274,14 +278,14 @@ impl Predictor {
         let n_beyond = frames().filter(|simulated| !**simulated).count();
         if n_beyond > 0 {
             progress.note(&format!(
-                "{n_beyond} of {} frames lie deeper than the gel could be pressed; the last pressures stand for them",
+                "{n_beyond} of {} frames are deeper than the simulation; the last simulated pressures are used for them",
                 frames().count()
             ));
         }
         Ok(self.predicted(presses, None))
     }
 
-    /// What is known of the bench while it presses with an indenter.
+    /// The fitted bench for presses with an indenter.
     fn bench_for(&self, indenter: &str) -> BenchEstimate {
         let bench = &self.model.record.bench;
         match &self.added {
@@ -309,7 +313,8 @@ impl Predictor {
     }
 }
 
-/// A path as a bench carries it out: so much deeper than its poses say, on a gel so much stiffer than the simulated one.
+/// A path as the bench carries it out: deeper than its poses by the contact height, with forces
+/// divided by the ratio of the stiffness to the simulated one.
 fn on_bench(mut path: PressPath, contact_offset_mm: f64, stiffness: f64) -> PressPath {
     for pose in &mut path.poses {
         pose.position_mm.z -= contact_offset_mm;
@@ -320,7 +325,8 @@ fn on_bench(mut path: PressPath, contact_offset_mm: f64, stiffness: f64) -> Pres
 }
 
 impl Predicted {
-    /// Depth, force, readings with their intervals, and how unlike contacts are to what taught, over time; presses one after the other.
+    /// The plot of depth, force, readings with their intervals, and OOD score over time. Presses
+    /// follow one after the other.
     #[must_use]
     pub fn scene(&self) -> Scene {
         let mut start_s = 0.0;
@@ -394,15 +400,12 @@ impl Predicted {
             panel("reading, 90 % (kPa)", readings),
         ];
         if is_sure {
-            panels.push(panel(
-                "unlike what taught",
-                vec![series("", Ink::Text, &unlikeness)],
-            ));
+            panels.push(panel("OOD score", vec![series("", Ink::Text, &unlikeness)]));
         } else {
             panels[2].y_label = "reading (kPa)".to_owned();
         }
         Panels {
-            title: format!("What {} would read, {}", self.sensor, self.provenance),
+            title: format!("Predicted readings of {}, {}", self.sensor, self.provenance),
             x_label: x_label.to_owned(),
             panels,
             panel_height_px: 150.0,

@@ -1,4 +1,4 @@
-//! Recordings without what temperature did to their zeros.
+//! Temperature compensation of recordings.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,8 @@ use twintac_recording::Recording;
 use twintac_temperature::Compensation;
 use twintac_work::{Progress, WorkError};
 
-/// Takes off what temperature did to the zeros, where a recording has temperatures, and tells how much that was.
+/// Removes the drift of the zeros with temperature, where a recording has temperatures, and notes
+/// how large it was.
 ///
 /// # Errors
 /// A compensation of another sensor, or without one of its taxels.
@@ -21,14 +22,14 @@ pub fn compensate(
         .map_err(|error| WorkError::Input(error.to_string()))?;
     if done.n_without > 0 {
         progress.note(&format!(
-            "{} of {} presses have no temperatures, and keep what temperature did to them",
+            "{} of {} presses have no temperatures and are not compensated",
             done.n_without,
             done.n_presses + done.n_without
         ));
     }
     if done.largest_kpa > 0.0 {
         progress.note(&format!(
-            "zeros drift with temperature by up to {:.3} kPa within a press, which is taken off",
+            "the drift of the zeros with temperature, up to {:.3} kPa within a press, is compensated",
             done.largest_kpa
         ));
     }
@@ -36,7 +37,7 @@ pub fn compensate(
     Ok(())
 }
 
-/// A recording as those were that taught a model.
+/// A recording, compensated like those that a model was trained on.
 pub(crate) fn as_taught<'r>(
     recording: &'r Recording,
     record: &ModelRecord,

@@ -1,4 +1,4 @@
-//! A model judged on recordings from elsewhere.
+//! Evaluation of a model on other recordings.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,35 +26,37 @@ const CONTACT_LIMIT_MM: f64 = 0.3;
 /// A model's figures on recordings that it was not trained on.
 #[derive(Clone, Debug, Serialize)]
 pub struct UnseenEvaluation {
-    /// Where the readings come from.
+    /// Provenance of the readings.
     pub provenance: Provenance,
     /// What the figures mean.
     pub definition: String,
-    /// Taxels left out of the headline.
+    /// Taxels excluded from the headline figure.
     pub taxels_left_out: Vec<String>,
-    /// The variant.
+    /// The variant of the twin.
     pub variant: String,
-    /// Presses that were scored.
+    /// Number of presses that were scored.
     pub presses: usize,
-    /// Errors after each new file's contact height was fitted to its first presses, which are not scored.
+    /// Errors after each new file's contact height was fitted to its first presses, which are not
+    /// scored.
     #[serde(flatten)]
     pub twin: TwinFigures,
-    /// Errors on the same presses with contact heights as at training: what the twin says without having touched the gel once.
+    /// Errors on the same presses with the contact heights of the training: the prediction without
+    /// a single touch of the new gel.
     pub uncalibrated: Figures,
-    /// Predicting nothing, on the same presses.
+    /// Predicting zero, on the same presses.
     pub baselines: BaselineFigures,
-    /// How well the presses themselves repeat.
+    /// Repeatability of the presses themselves.
     pub repeatability: Option<Figures>,
-    /// Contact heights of files that the model had not seen.
+    /// Fitted contact heights of files that the model had not seen.
     pub contact: Vec<Recalibration>,
 }
 
-/// Judges a model on other recordings of its sensor: simulates their places, fits each new file's contact height to its first presses,
-/// and scores the rest.
+/// Evaluates a model on other recordings of its sensor: simulates their locations, fits each new
+/// file's contact height to its first presses, and scores the rest.
 ///
 /// # Errors
-/// A model that cannot be read, recordings of another sensor than its own; presses that taught the
-/// model; a place that cannot be pressed.
+/// A model that cannot be read; recordings of another sensor; presses that the
+/// model was trained on; a location that cannot be pressed.
 pub fn evaluate_elsewhere(
     model_folder: &Path,
     recording: &Recording,
@@ -102,18 +104,18 @@ pub fn evaluate_elsewhere(
     })
 }
 
-/// A model is of one sensor, by name and by taxels: sensors whose taxels have the same names may
-/// have other gels. Recordings without a press say nothing.
+/// Refuses recordings of another sensor, by name and by taxels: sensors whose taxels have the same
+/// names may have other gels. Recordings without presses are refused as well.
 pub(crate) fn refuse_other_sensor(recording: &Recording, sensor: &Sensor) -> Result<(), WorkError> {
     if recording.presses.is_empty() {
         return Err(WorkError::Input(format!(
-            "the recordings of `{}` have no press: give some that have",
+            "the recordings of `{}` have no presses: give other recordings",
             recording.sensor
         )));
     }
     if recording.sensor != sensor.name {
         return Err(WorkError::Input(format!(
-            "the recordings are of the sensor `{}`, not of `{}`; if they call the same sensor otherwise, say so with --recorded-as {}",
+            "the recordings are of the sensor `{}`, not of `{}`; if the sensor has another name there, give --recorded-as {}",
             recording.sensor, sensor.name, recording.sensor
         )));
     }
@@ -129,7 +131,7 @@ pub(crate) fn refuse_other_sensor(recording: &Recording, sensor: &Sensor) -> Res
     )))
 }
 
-/// Presses that taught a model are not unseen.
+/// Refuses presses that a model was trained on.
 pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Result<(), WorkError> {
     let known: Vec<&Press> = recording
         .presses
@@ -140,7 +142,7 @@ pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Resul
         return Ok(());
     };
     Err(WorkError::Input(format!(
-        "{} of {} presses taught this model, `{}` of {} for one; give recordings that it has never seen",
+        "this model was trained on {} of {} presses, for example `{}` of {}; give other recordings",
         known.len(),
         recording.presses.len(),
         first.name,
@@ -148,7 +150,7 @@ pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Resul
     )))
 }
 
-/// A table over depth for each place that a recording presses.
+/// A table over depth for each location that a recording presses.
 pub(crate) fn simulate(
     store: &DepthTableStore<'_>,
     recording: &Recording,
@@ -161,7 +163,7 @@ pub(crate) fn simulate(
     Ok((places, tables))
 }
 
-/// A recording beside what the gel does at its places.
+/// A recording, with the simulated response of the gel at its locations.
 pub(crate) struct Pressed<'a> {
     pub recording: &'a Recording,
     pub places: &'a Places,
@@ -170,7 +172,7 @@ pub(crate) struct Pressed<'a> {
 }
 
 impl Pressed<'_> {
-    /// The contact heights of files that the model had not seen.
+    /// Fits the contact heights of files that the model had not seen.
     fn contact_heights(&self, model: &Model) -> Result<Vec<Recalibration>, WorkError> {
         let bench = &model.record.bench;
         let mut contact = Vec::new();

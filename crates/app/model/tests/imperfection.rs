@@ -1,4 +1,5 @@
-//! Sensors are drawn with known imperfections, pressed and recorded; the imperfections are found again.
+//! Sensors with known variation are drawn, pressed and recorded, and the variation is estimated
+//! from the recordings.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -14,19 +15,19 @@ use twintac_sensors::{Imperfection, SensorBatch};
 use twintac_shape::Pose;
 
 const STEP_S: f64 = 0.001;
-/// Nothing touches so long before and after a press, s.
+/// Time without contact before and after a press, s.
 const REST_S: f64 = 1.0;
 const SPEED_MM_PER_S: f64 = 0.5;
 const DEPTH_MM: f64 = 1.5;
 
-/// Height above the gel at a time, mm: down from a millimetre above, and up again.
+/// Height above the gel at a time, mm: down from 1 mm above, and up again.
 fn height_mm(time_s: f64) -> f64 {
     let down_s = (1.0 + DEPTH_MM) / SPEED_MM_PER_S;
     let from_turn_s = (time_s - REST_S - down_s).abs().min(down_s);
     from_turn_s * SPEED_MM_PER_S - DEPTH_MM
 }
 
-/// A sensor of these imperfections, pressed slowly above each taxel.
+/// Recordings of a sensor with this variation, pressed slowly above each taxel.
 fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Recorded {
     let sensor = &sensor.sensor;
     let indenter = sensor.indenter("sphere-25").unwrap();
@@ -94,7 +95,8 @@ fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Reco
     }
 }
 
-/// Of an untouched sensor: how many taxels read zero, and how many another value, over and over.
+/// For an untouched sensor: the number of taxels that read zero, and of those that repeat another
+/// value.
 fn failing(imperfection: &Imperfection, seed: u64) -> [usize; 2] {
     let gel = FastGel::phystac().unwrap();
     let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [1, 1], seed);
@@ -135,7 +137,7 @@ fn known_imperfections_are_found_again() {
         jitter: 0.1,
         ..Imperfection::default()
     };
-    // A sensor that has both.
+    // A sensor with both faults.
     let seed = (1..100)
         .find(|seed| failing(&drawn, *seed).iter().all(|n| *n > 0))
         .unwrap();
@@ -203,7 +205,7 @@ fn nothing_to_find_from_and_another_sensor_are_refused() {
     assert!(error.contains("other"), "{error}");
 }
 
-/// The files that come with this project, made by `twintac fast imperfection`.
+/// The files of this project, made by `twintac fast imperfection`.
 #[test]
 fn what_is_shipped_can_be_read_and_says_where_it_comes_from() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../imperfections");
@@ -221,7 +223,7 @@ fn what_is_shipped_can_be_read_and_says_where_it_comes_from() {
             "{found:?}"
         );
         assert!(text.contains("twintac fast imperfection --model"), "{name}");
-        // Nothing that was fitted to other people's recordings is shipped.
+        // No values that were fitted to other people's recordings are shipped.
         assert!(text.contains("emulated (") && !text.contains("real ("), "{name}");
     }
 }

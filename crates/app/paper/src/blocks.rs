@@ -1,4 +1,4 @@
-//! Pieces of the page of the paper's experiments.
+//! Parts of the page of the paper's experiments.
 
 use twintac_plot::page::{Badge, Cell, Figure, Table};
 use twintac_plot::{Scene, fixed};

@@ -1,4 +1,4 @@
-//! The paper's data at its size, and the twins of them.
+//! The paper's data in its full size, and the twins trained on them.
 
 use twintac_run::{Metrics, Run};
 use twintac_sensor::SensorFile;
@@ -21,7 +21,8 @@ impl Paper {
         Ok(run)
     }
 
-    /// Twins of the presses, on the gel of a sensor that lies so; how well the first of them does, and the paper's.
+    /// Trains twins on the presses, in the frame of the levelled gel. Returns the run, the metrics
+    /// of this project's twin, and the stage of the paper's network.
     pub(super) fn data(
         &self,
         presses: &Run,

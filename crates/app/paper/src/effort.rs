@@ -1,4 +1,4 @@
-//! How much of the paper's experiments is made.
+//! The extent of the experiments: full, or a quick trial.
 
 use std::path::Path;
 
@@ -13,24 +13,24 @@ use twintac_work::WorkError;
 
 use crate::mixture::{Mixture, Simulated};
 
-/// Edges over a gel's height and over a contact's radius where it has to be quick.
+/// Edges over a gel's height and over a contact's radius in the quick trial.
 const COARSE: f64 = 4.0;
 
 /// Simulated trials of each shape in the paper.
 pub(super) const PAPER_SIMULATED: usize = 96;
 
-/// How much of the paper's experiments is made.
+/// The extent of the experiments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Effort {
-    /// The paper's counts: hours.
+    /// The paper's counts: takes hours.
     Full,
-    /// Few presses of a simple bench: minutes. Its figures show that everything runs, and nothing else.
+    /// Few presses of a simple bench: takes minutes. Its figures show only that everything runs.
     Quick,
 }
 
 impl Effort {
-    /// The reality of the bench that presses.
+    /// The emulator configuration of the bench.
     pub(super) fn reality(self) -> Result<Reality, WorkError> {
         match self {
             Self::Full => reality(Some(Path::new("harder"))),
@@ -38,7 +38,7 @@ impl Effort {
         }
     }
 
-    /// A bench without what makes it hard. A quick one has a coarse gel.
+    /// The default emulator configuration, which is easier. The quick trial has a coarse gel.
     pub(super) fn simple_reality(self) -> Result<Reality, WorkError> {
         let mut simple = reality(None)?;
         if self == Self::Quick {
@@ -48,7 +48,7 @@ impl Effort {
         Ok(simple)
     }
 
-    /// Presses that the gel's material is fitted to.
+    /// Number of presses to which the gel's material is fitted.
     pub(super) fn material_presses(self) -> usize {
         match self {
             Self::Full => 7,
@@ -56,7 +56,7 @@ impl Effort {
         }
     }
 
-    /// Steps at most of the fit of the material.
+    /// Most iterations of the fit of the material.
     pub(super) fn material_steps(self) -> u32 {
         match self {
             Self::Full => 30,
@@ -64,7 +64,7 @@ impl Effort {
         }
     }
 
-    /// The presses that the twin learns from.
+    /// The protocol of the twin's training presses.
     pub(super) fn data(self) -> BuiltIn {
         match self {
             Self::Full => PAPER_PROTOCOL,
@@ -72,7 +72,7 @@ impl Effort {
         }
     }
 
-    /// Trials of each shape that the bench presses to learn from, and as many to test with.
+    /// Trials of each shape on the bench for training; as many more are for testing.
     pub(super) fn real_trials(self) -> u32 {
         match self {
             Self::Full => 20,
@@ -80,7 +80,7 @@ impl Effort {
         }
     }
 
-    /// Trials of each shape that the twin makes.
+    /// Trials of each shape that the twin simulates.
     pub(super) fn simulated_trials(self) -> u32 {
         match self {
             Self::Full => PAPER_SIMULATED as u32,
@@ -88,7 +88,7 @@ impl Effort {
         }
     }
 
-    /// Simulated trials of each shape that are trained with, but for the most.
+    /// Smaller numbers of simulated trials of each shape for training.
     fn fewer_simulated(self) -> &'static [usize] {
         match self {
             Self::Full => &[20, 48],
@@ -96,7 +96,7 @@ impl Effort {
         }
     }
 
-    /// Trials of each shape on the bench that learning is tried with.
+    /// Numbers of trials of each shape on the bench for training.
     fn curve(self) -> &'static [usize] {
         match self {
             Self::Full => &[0, 1, 2, 5, 10, 20],
@@ -104,8 +104,10 @@ impl Effort {
         }
     }
 
-    /// What shapes are learned from: over trials of the bench without simulated ones, with the paper's number of those of either twin, and with all of this
-    /// twin; over simulated trials with none, some and all of the bench; and with series over time instead of load.
+    /// The training sets of the classifiers: for each number of bench trials, without simulated
+    /// ones, with the paper's number of simulated ones of either twin, and with all of this
+    /// project's twin; for smaller numbers of simulated trials, with none, a quarter and all of the
+    /// bench trials; and with series over time instead of load.
     pub(super) fn mixtures(self) -> Vec<Mixture> {
         let all = self.simulated_trials() as usize;
         let papers = PAPER_SIMULATED.min(all);
@@ -138,7 +140,7 @@ impl Effort {
         mixtures
     }
 
-    /// Seeds, from 1 to this.
+    /// Number of seeds, from 1 on.
     pub(super) fn seeds(self) -> u64 {
         match self {
             Self::Full => 5,
@@ -150,7 +152,8 @@ impl Effort {
         match self {
             Self::Full => RunSettings {
                 bench: BenchSettings {
-                    // 168 presses of seven shapes in a plane tell where the ports are, and the gel is fitted.
+                    // 168 presses of seven shapes over a plane determine the port positions, and
+                    // the gel is fitted separately.
                     port_shift_limit_mm: 1.2,
                     port_shift_pull: 1e-5,
                     smooth_factor_pull: 1e-3,

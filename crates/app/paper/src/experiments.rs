@@ -1,4 +1,4 @@
-//! The folder of the experiments, and what each of them works with.
+//! The folder of the experiments, and what they share.
 
 use std::path::{Path, PathBuf};
 
@@ -9,10 +9,10 @@ use twintac_work::{At, Caller, Progress, WorkError};
 
 use crate::effort::Effort;
 
-/// What makes all stages.
+/// The command that makes all stages.
 pub(super) const PAPER_COMMAND: &str = "twintac reproduce --paper";
 
-/// The paper's experiments, in a folder. What is there is not made again.
+/// The paper's experiments in a folder. What exists there is not made again.
 #[derive(Clone, Debug)]
 pub struct Paper {
     pub(super) folder: PathBuf,
@@ -24,7 +24,7 @@ pub struct Paper {
 }
 
 impl Paper {
-    /// Starts, or takes up what a folder holds.
+    /// Starts the experiments, or continues those of a folder.
     ///
     /// # Errors
     /// The folder cannot be written, or another process works in it.
@@ -45,12 +45,13 @@ impl Paper {
         self.folder.join("report.html")
     }
 
-    /// A run with the sensor as it is described.
+    /// A run with the described sensor.
     pub(super) fn run(&self, name: &str, source: &str) -> Result<Run, WorkError> {
         self.run_with(self.sensor.clone(), name, source)
     }
 
-    /// A run whose gel is simulated as another description says. The bench's gel is its own.
+    /// A run whose simulated gel follows another description. The bench's gel does not depend on
+    /// it.
     pub(super) fn run_with(&self, sensor: SensorFile, name: &str, source: &str) -> Result<Run, WorkError> {
         let settings = self.effort.run_settings();
         let (folder, caller) = (self.folder.join(name), self.caller.clone());

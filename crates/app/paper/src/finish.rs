@@ -1,4 +1,4 @@
-//! All experiments, one after the other.
+//! Runs all experiments, one after the other.
 
 use twintac_store::write_json;
 use twintac_work::WorkError;
@@ -8,7 +8,7 @@ use crate::metrics::PaperMetrics;
 use crate::page;
 
 impl Paper {
-    /// Makes all of it, and writes `report.html` and `metrics.json`.
+    /// Makes everything, and writes `report.html` and `metrics.json`.
     ///
     /// # Errors
     /// Those of the stages.

@@ -1,7 +1,9 @@
-//! How the sensor lies under the robot, from where a ball first touches the gel.
+//! Finds the tilt of the sensor under the robot, from the points where a ball first touches the
+//! gel.
 //!
-//! A robot that has touched the gel's middle knows how high it is there, and believes that it lies level. Where a ball touches elsewhere
-//! says how far that is true. Poses in the bench's frame are then turned into the gel's, about the top of its middle.
+//! A robot that has touched the gel's middle knows the height there, and assumes that the gel is
+//! level. First contacts at other locations show the true tilt. Poses are then transformed from the
+//! bench's frame into the gel's, by a rotation about the top of its middle.
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use serde::Serialize;
@@ -14,27 +16,29 @@ use twintac_work::WorkError;
 
 use crate::experiments::Paper;
 
-/// Forces between which a ball's force over depth follows Hertz closely, and noise does not count, N.
+/// Range of forces in which a ball's force over depth follows Hertz closely and noise is
+/// negligible, N.
 const HERTZ_N: [f64; 2] = [0.05, 0.6];
 
-/// How far off a first touch is found, mm, and how late forces may be recorded, s: what is known of them before.
+/// Prior standard deviations: of a first contact, mm, and of the delay of recorded forces, s.
 const TOUCH_MM: f64 = 0.02;
 const LAG_S: f64 = 0.03;
 
-/// How the gel lies in the bench's frame.
+/// The orientation of the gel in the bench's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Level {
-    /// Turn of the gel about the bench's x and y axes, radians.
+    /// Rotation of the gel about the bench's x and y axes, radians.
     pub(super) tilt_rad: [f64; 2],
     /// Height of the gel's top above the board, mm.
     top_mm: f64,
 }
 
 impl Level {
-    /// The plane through the heights at which the sensor's ball first touches the gel. A force that is recorded late makes a fast press touch lower.
+    /// Fits a plane through the heights at which the sensor's ball first touches the gel. The fit
+    /// includes the delay of recorded forces, which makes a fast press seem to touch lower.
     ///
     /// # Errors
-    /// Presses of a ball at fewer than three places that are not in a line.
+    /// Presses of a ball at fewer than three locations, or at locations in one line.
     pub(super) fn found(recording: &Recording, sensor: &Sensor) -> Result<Self, WorkError> {
         let is_ball = |press: &&Press| {
             let indenter = sensor.indenter(&press.indenter);
@@ -55,7 +59,7 @@ impl Level {
         squares.w_axis.w += (TOUCH_MM / LAG_S).powi(2);
         if touches.len() < 3 || squares.determinant() < 1e-6 {
             return Err(WorkError::Input(format!(
-                "a ball touches the gel at {} places, expected three that are not in a line, to see whether it lies level",
+                "a ball touches the gel at {} locations, expected three that are not on one line, to measure its tilt",
                 touches.len()
             )));
         }
@@ -71,7 +75,7 @@ impl Level {
         DQuat::from_scaled_axis(DVec3::new(x_rad, y_rad, 0.0)).inverse()
     }
 
-    /// A pose of the bench's frame in the gel's.
+    /// Transforms a pose from the bench's frame into the gel's.
     fn pose(&self, bench_from_indenter: &Pose) -> Pose {
         let (rotation, top_mm) = (self.rotation(), self.top_mm * DVec3::Z);
         Pose {
@@ -80,7 +84,8 @@ impl Level {
         }
     }
 
-    /// A planned press as the gel feels it: turned. How far it is then moved along the gel, less than a hundredth of the way, is left out.
+    /// A planned press in the gel's frame: rotated. The resulting displacement along the gel, less
+    /// than a hundredth of the travel, is neglected.
     pub(super) fn plan(&self, plan: &PressPlan) -> PressPlan {
         PressPlan {
             rotation: self.rotation() * plan.rotation,
@@ -90,7 +95,7 @@ impl Level {
 }
 
 impl Change for Level {
-    /// A recording whose poses are in the gel's frame.
+    /// The recording with poses in the gel's frame.
     fn changed(&self, mut recording: Recording) -> Recording {
         for press in &mut recording.presses {
             for pose in &mut press.gel_from_indenter {
@@ -102,20 +107,21 @@ impl Change for Level {
 }
 
 impl Paper {
-    /// How the sensor lies, from the presses of a ball.
+    /// The orientation of the gel, from the presses of a ball.
     pub(super) fn level(&self, presses: &Run) -> Result<Level, WorkError> {
         Level::found(&presses.recording()?, &self.sensor.sensor)
     }
 }
 
-/// A first touch.
+/// A first contact.
 struct Touch {
-    /// Where the ball is; its height but for a constant.
+    /// Position of the ball. Its height has an unknown constant offset.
     at_mm: DVec3,
     speed_mm_per_s: f64,
 }
 
-/// Where a ball is when it first touches: the power 2/3 of its force grows in proportion to its depth (Hertz, 1882).
+/// The ball's position at first contact: the force to the power 2/3 is proportional to the depth
+/// (Hertz, 1882).
 fn first_touch(press: &Press) -> Option<Touch> {
     let force_n = press.force_n.as_ref()?;
     let largest = force_n.iter().copied().fold(0.0, f64::max);
@@ -149,7 +155,7 @@ mod tests {
     use twintac_recording::{Control, Provenance};
     use twintac_sensor::SensorFile;
 
-    /// Presses of a ball on a gel that is tilted, recorded by a robot that does not know it.
+    /// Presses of a ball on a tilted gel, recorded by a robot that does not know the tilt.
     #[test]
     fn the_tilt_of_a_gel_is_found_and_taken_off() {
         let sensor = SensorFile::phystac().unwrap().sensor;
@@ -158,7 +164,7 @@ mod tests {
         let press = |place_mm: [f64; 2]| {
             let up = tilt * DVec3::Z;
             let top = DVec3::Z * top_mm;
-            // The ball's middle, one radius above the tilted plane.
+            // The ball's centre is one radius above the tilted plane.
             let height_mm = |x: f64, y: f64| top.z - (up.x * x + up.y * y) / up.z + radius_mm / up.z;
             let depths = (0..60).map(|frame| 0.05 * f64::from(frame) - 0.5);
             let pose = |depth_mm: f64| {
@@ -199,6 +205,6 @@ mod tests {
 
         recording.presses.truncate(2);
         let error = Level::found(&recording, &sensor).unwrap_err().to_string();
-        assert!(error.contains("at 2 places"), "{error}");
+        assert!(error.contains("at 2 locations"), "{error}");
     }
 }

@@ -16,20 +16,20 @@ use twintac_work::{Planned, Progress, Work, WorkError};
 use crate::experiments::{PAPER_COMMAND, Paper};
 use crate::level::Level;
 
-/// A shape at its deepest, as the sensor reads it and as the twin does.
+/// Readings of a shape at its deepest, of sensor and twin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShapeMap {
     /// The shape.
     pub indenter: String,
     /// Readings at full depth, kPa; `[n_taxels]`.
     pub sensor_kpa: Vec<f64>,
-    /// The same of the twin.
+    /// Readings of the twin at full depth, kPa; `[n_taxels]`.
     pub twin_kpa: Vec<f64>,
-    /// Mean difference of the taxels over the sensor's largest reading, %.
+    /// Mean absolute difference of the taxels, % of the sensor's largest reading.
     pub difference_percent: f64,
 }
 
-/// What sensor and twin read of the shapes.
+/// The inputs of the maps.
 #[derive(Serialize)]
 struct Mapping<'a> {
     felt: &'a [PressPlan],
@@ -91,7 +91,8 @@ fn compared(sensor: &Recording, twin: &Recording) -> Vec<ShapeMap> {
     presses.map(map).collect()
 }
 
-/// Mean readings over the second half of the frames at full depth, which differ by relaxation alone.
+/// Mean readings over the second half of the frames at full depth. These frames differ by
+/// relaxation alone.
 fn at_full_depth(press: &Press) -> Vec<f64> {
     let heights = press.gel_from_indenter.iter().map(|pose| pose.position_mm.z);
     let lowest_mm = heights.clone().fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! What the gel is made of, from the force of a few presses.
+//! Fits the gel's material to the forces of a few presses.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ use crate::effort::Effort;
 use crate::experiments::{PAPER_COMMAND, Paper};
 use crate::level::Level;
 
-/// What is fitted. Forces tell no more of a gel than how stiff it is, how that grows with strain, how it gives way when it is confined, and how much it sticks.
+/// The fitted constants. Forces determine no more of a gel than its stiffness, how that grows with
+/// strain, how compressible it is when confined, and its friction.
 const FREE: [&str; 5] = [
     "c10_kpa",
     "c20_kpa",
@@ -25,7 +26,7 @@ const FREE: [&str; 5] = [
     "depth_offset_mm",
 ];
 
-/// How long is sought, and how many frames of each press are simulated.
+/// Number of simulated frames of each press, and most iterations of the fit.
 #[derive(Clone, Copy, Serialize)]
 struct Search {
     most_frames: usize,
@@ -48,26 +49,27 @@ impl Search {
     }
 }
 
-/// A gel's material, as its presses tell it.
+/// The fitted material of the gel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GelMaterial {
     /// First constant of Yeoh's model, kPa: half the shear modulus at small strain.
     pub c10_kpa: f64,
-    /// Second constant, kPa: how the gel stiffens.
+    /// Second constant, kPa: growth of the stiffness with strain.
     pub c20_kpa: f64,
     /// Poisson's ratio at small strain.
     pub poissons_ratio: f64,
     /// Coulomb's coefficient of friction between gel and indenters.
     pub friction: f64,
-    /// What the fit leaves of the forces, % of the largest.
+    /// Residual of the forces, % of the largest.
     pub residual_percent: f64,
-    /// Presses that it was fitted to.
+    /// Number of presses that were fitted.
     pub presses: usize,
     /// Warnings of the fit, in words.
     pub warnings: Vec<String>,
 }
 
-/// How presses are simulated for the fit. Every step of it presses all curves again: coarser than the tables.
+/// Settings of the simulation for the fit. They are coarser than for tables, because every
+/// iteration presses all curves again.
 fn fit_settings(effort: Effort) -> SimulateSettings {
     let fine = SimulateSettings {
         edges_per_height: 5.0,
@@ -131,7 +133,8 @@ impl Stage for Fitting<'_> {
 }
 
 impl Paper {
-    /// Presses every shape once, and fits the gel's material and its friction to the forces. The sensor with that gel, and what was found.
+    /// Presses every shape once on the bench, and fits the gel's material and friction to the
+    /// forces. Returns the sensor with that gel, and the fitted values.
     pub(super) fn material(&self, level: &Level) -> Result<(SensorFile, GelMaterial), WorkError> {
         let protocol = MATERIAL_PROTOCOL;
         let described = &self.sensor;
@@ -161,7 +164,8 @@ impl Paper {
     }
 }
 
-/// The described gel as one of Yeoh's model that stiffens a little, without which a ring may buckle it (Yeoh, Rubber Chemistry and Technology 63, 1990).
+/// The described gel as a Yeoh material with slight stiffening; without it a ring can buckle the
+/// gel (Yeoh, Rubber Chemistry and Technology 63, 1990).
 fn yeoh(described: &SensorFile) -> String {
     let material = &described.sensor.gel.material;
     let shear_kpa = material.shear_modulus_kpa();
@@ -180,13 +184,14 @@ mod tests {
 
     use super::*;
 
-    /// How the gel lies on the bench of reality `harder`, about, rad.
+    /// Approximate tilt of the gel in the emulator configuration `harder`, rad.
     const TILT_RAD: DVec3 = DVec3::new(0.02, -0.015, 0.0);
 
-    /// Frames of a recorded press a second, about.
+    /// Approximate frame rate of a recorded press, Hz.
     const RATE_HZ: f64 = 55.0;
 
-    /// The press of a cylinder on whose way back a coarse triangle had a point deep inside the rounded rim: times, s, and depths, mm.
+    /// A press of a cylinder in which, on the way back, a coarse triangle had a point deep inside
+    /// the rounded rim: times, s, and depths, mm.
     const DEEP_INSIDE_A_RIM: [[f64; 2]; 17] = [
         [0.182_025, -0.245_265],
         [0.236_127, -0.136_202],
@@ -207,14 +212,14 @@ mod tests {
         [4.418_240, -0.245_265],
     ];
 
-    /// The gel as the fit begins with it.
+    /// The gel with which the fit starts.
     fn gel() -> Gel {
         let described = SensorFile::phystac().unwrap();
         let start = described.with_material(&yeoh(&described)).unwrap();
         Gel::new(start.sensor.clone(), fit_settings(Effort::Full))
     }
 
-    /// A press of so many depths, mm, over time, s; what was measured does not count here.
+    /// A press with these depths, mm, over time, s. Its measured values are not used.
     fn curve(
         gel: &Gel,
         indenter: &str,
@@ -243,7 +248,8 @@ mod tests {
         }
     }
 
-    /// Presses as the fit presses first, with how the forces change with all that is fitted.
+    /// Simulates presses as in the first iteration of the fit, with the derivatives of the forces
+    /// with respect to all free constants.
     fn press(gel: &Gel, curves: &[Curve], most_frames: usize) {
         let settings = FitSettings {
             most_frames,

@@ -13,22 +13,22 @@ use crate::under_a_ball::SensorFigures;
 /// All figures of the paper's experiments: `metrics.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PaperMetrics {
-    /// Where the sensor's readings come from: `emulated`. The twin's are `simulated`.
+    /// Provenance of the sensor's readings: `emulated`. The twin's are `simulated`.
     pub provenance: Provenance,
-    /// How much was made.
+    /// The extent of the experiments.
     pub effort: Effort,
-    /// Seed of all that chance decides.
+    /// Seed of all random choices.
     pub seed: u64,
-    /// How the sensor was found to lie: turned about the bench's x and y axes, radians.
+    /// The tilt that was found: rotation about the bench's x and y axes, radians.
     pub tilt_rad: [f64; 2],
-    /// What the gel was found to be made of.
+    /// The fitted material of the gel.
     pub material: GelMaterial,
-    /// The twin, and what it is compared with.
+    /// Errors of the twin and of the baselines.
     pub twin: Metrics,
-    /// What the sensor does under a ball.
+    /// Figures of the sensor under a ball.
     pub sensor: SensorFigures,
-    /// Five shapes, sensor beside twin.
+    /// Maps of five shapes, sensor beside twin.
     pub maps: Vec<ShapeMap>,
-    /// Shapes told by touch.
+    /// Classification of shapes by touch.
     pub shapes: Vec<ShapesResult>,
 }

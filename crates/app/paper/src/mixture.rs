@@ -1,22 +1,22 @@
-//! What a classifier of shapes is trained with.
+//! Training sets of shape classifiers.
 
 use serde::{Deserialize, Serialize};
 use twintac_classify::Sampling;
 
-/// Where the simulated trials of a training come from.
+/// Source of the simulated trials of a training set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Simulated {
-    /// There are none.
+    /// No simulated trials.
     None,
     /// This project's twin.
     Twin,
-    /// The paper's twin: its stress feature and its perceptron.
+    /// The paper's network: a perceptron on its stress feature.
     PaperTwin,
 }
 
 impl Simulated {
-    /// The name used in files.
+    /// Its name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -26,20 +26,20 @@ impl Simulated {
         }
     }
 
-    /// The file of the trials.
+    /// Name of the file of its trials.
     pub(super) fn file(self) -> String {
         format!("{}.parquet", self.name())
     }
 }
 
-/// A way to train: what a classifier sees, and of how many trials.
+/// A training set: the numbers and sources of its trials, and how they are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mixture {
     /// Trials of each shape on the bench.
     pub real_trials: usize,
-    /// Where the simulated ones come from.
+    /// Source of the simulated trials.
     pub simulated: Simulated,
-    /// How many of them each shape has.
+    /// Simulated trials of each shape.
     pub simulated_trials: usize,
     /// How a press becomes a series.
     pub sampling: Sampling,

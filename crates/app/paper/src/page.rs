@@ -1,4 +1,4 @@
-//! The page of the paper's experiments: what the paper reports beside what was found here.
+//! The page of the paper's experiments: the paper's figures beside those of this project.
 
 use twintac_model::Figures;
 use twintac_plot::page::{Block, Cell, Fact, Page, Row, Section, Table};
@@ -20,15 +20,15 @@ pub(super) fn page(metrics: &PaperMetrics, sensor: &Sensor, command: &str) -> Pa
         title: "The TwinTac paper's experiments".into(),
         badge: badge(metrics.provenance),
         lead: vec![
-            "What the paper (arXiv 2509.10063) measured on its own sensor, beside the same experiments on an emulated bench and its twin.".into(),
-            "The paper's figures are real, of a sensor and protocols that it describes in part; the numbers are not of the same thing.".into(),
+            "The measurements of the paper (arXiv 2509.10063) on its own sensor, beside the same experiments on an emulated bench and its twin.".into(),
+            "The paper's figures are real. It describes its sensor and protocols only in part, so the two cannot be compared directly.".into(),
         ],
         warnings: warnings(metrics),
         sections: vec![
             section("twin", "The twin's error", twin(metrics)),
             section("sensor", "The sensor under a ball", under_a_ball(metrics)),
             section("maps", "Five shapes", maps(metrics, sensor)),
-            section("shapes", "Shapes told by touch", shapes(metrics, sensor)),
+            section("shapes", "Shapes classified by touch", shapes(metrics, sensor)),
             section("making-of", "How it was made", making(metrics, command)),
         ],
         is_sheet: false,
@@ -38,7 +38,7 @@ pub(super) fn page(metrics: &PaperMetrics, sensor: &Sensor, command: &str) -> Pa
 fn warnings(metrics: &PaperMetrics) -> Vec<String> {
     let quick = match metrics.effort {
         Effort::Full => None,
-        Effort::Quick => Some("Made with --quick: few presses of a simple bench. The figures show that everything runs, and nothing else.".into()),
+        Effort::Quick => Some("Made with --quick: few presses on a simple test setup. The figures only show that everything runs.".into()),
     };
     let fit = metrics.material.warnings.iter();
     let fit = fit.map(|warning| format!("The fit of the gel's material: {warning}."));
@@ -65,7 +65,11 @@ fn twin(metrics: &PaperMetrics) -> Vec<Block> {
             Ink::Twin,
         ),
         ("paper's network, here", nearest("paper"), Ink::Series(1)),
-        ("fitted curve", baseline(&found.baselines.kernel), Ink::Sensor),
+        (
+            "parametric baseline",
+            baseline(&found.baselines.kernel),
+            Ink::Sensor,
+        ),
         (
             "static polynomial",
             baseline(&found.baselines.polynomial),
@@ -83,10 +87,7 @@ fn twin(metrics: &PaperMetrics) -> Vec<Block> {
         })
     });
     let chart = Bars {
-        title: format!(
-            "Error on {} presses that nothing was trained with",
-            found.held_out_presses
-        ),
+        title: format!("Error on {} held-out presses", found.held_out_presses),
         x_label: "mean absolute error, % of the largest reading".into(),
         bars: bars.collect(),
     };
@@ -95,7 +96,7 @@ fn twin(metrics: &PaperMetrics) -> Vec<Block> {
     let material = &metrics.material;
     let [x_mrad, y_mrad] = metrics.tilt_rad.map(|tilt| fixed(1e3 * tilt, 1));
     let gel = format!(
-        "First touches of the ball say how the sensor lies: turned by {x_mrad} and {y_mrad} mrad about x and y. The gel was then fitted to the forces of {} other presses: Yeoh's c10 {} kPa, c20 {} kPa, Poisson's ratio {}, friction {}; {} of the largest force is left.",
+        "First touches of the ball give the tilt of the sensor: {x_mrad} and {y_mrad} mrad about x and y. The gel was then fitted to the forces of {} other presses: Yeoh's c10 {} kPa, c20 {} kPa, Poisson's ratio {}, friction {}; the residual is {} of the largest force.",
         material.presses,
         fixed(material.c10_kpa, 1),
         fixed(material.c20_kpa, 1),
@@ -133,7 +134,7 @@ fn under_a_ball(metrics: &PaperMetrics) -> Vec<Block> {
             row("sensitivity", "7.24 kPa/N", value(own.sensitivity_kpa_per_n, "kPa/N", 2)),
             row("linear to", "the whole range", value(own.linear_to_n, "N", 1)),
             row("largest force", "212 N", value(own.largest_force_n, "N", 1)),
-            row("smallest weight found", "0.007 N", value(own.smallest_step_n, "N", 4)),
+            row("smallest weight detected", "0.007 N", value(own.smallest_step_n, "N", 4)),
         ],
     })]
 }
@@ -154,7 +155,7 @@ fn maps(metrics: &PaperMetrics, sensor: &Sensor) -> Vec<Block> {
         Some(figure(maps.scene(), metrics.provenance, "", None))
     });
     vec![
-        Block::Text("Pressure over the gel, interpolated between the taxels (dots). The difference is the taxels' mean, over the sensor's largest reading.".into()),
+        Block::Text("Pressure over the gel, interpolated between the taxels (dots). The difference is the mean over the taxels, relative to the sensor's largest reading.".into()),
         Block::Figures(pictures.collect()),
     ]
 }

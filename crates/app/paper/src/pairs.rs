@@ -1,4 +1,4 @@
-//! The paper's data as one array that NumPy and pandas read, with a card that says what it is.
+//! The paper's data as one array for NumPy and pandas, with a data card.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use twintac_work::{Progress, WorkError, sha256};
 use crate::experiments::{PAPER_COMMAND, Paper};
 use crate::structured_array::{Column, array, float};
 
-/// The frames of the bench beside the simulated ones.
+/// The inputs of the array.
 #[derive(Serialize)]
 struct Frames<'a> {
     taxels: Vec<&'a String>,
@@ -45,7 +45,7 @@ impl Stage for Frames<'_> {
 }
 
 impl Paper {
-    /// Writes `frames.npy` and `CARD.md`: each frame of the bench beside what is simulated of it.
+    /// Writes `frames.npy` and `CARD.md`: each frame of the bench beside its simulation.
     pub(super) fn pairs(&self, data: &Run) -> Result<(), WorkError> {
         self.run_stage(&Frames {
             taxels: self
@@ -120,7 +120,7 @@ fn card(n_frames: usize, n_presses: usize, shapes: &[String], taxels: &[String],
     let (shapes, taxels) = (shapes.join(", "), taxels.join(", "));
     format!(
         "# Paired frames of a PhysTac\n\n\
-         {n_frames} frames of {n_presses} presses: what a bench read (`emulated`), beside what a finite-element gel shows at the same instant (`simulated`). Made by \
+         {n_frames} frames of {n_presses} presses: the readings of a test setup (`emulated`), beside the finite-element simulation of the gel at the same instant (`simulated`). Made by \
          `twintac reproduce --paper`.\n\n\
          ```python\n\
          import numpy as np\n\
@@ -134,10 +134,10 @@ fn card(n_frames: usize, n_presses: usize, shapes: &[String], taxels: &[String],
          ```\n\n\
          | column | meaning |\n|---|---|\n\
          | `press` | number of the press |\n\
-         | `part` | 0 trains, 1 chooses, 2 judges; whole presses |\n\
+         | `part` | 0 training, 1 validation, 2 test; whole presses |\n\
          | `shape` | number of the shape, from zero: {shapes} |\n\
          | `time_s` | time in the press, s |\n\
-         | `x_mm`, `y_mm` | place of the press in the gel's plane, mm |\n\
+         | `x_mm`, `y_mm` | location of the press in the gel's plane, mm |\n\
          | `depth_mm` | depth below first touch, mm; negative above the gel |\n\
          | `force_n`, `simulated_force_n` | axial force on the shape, N: measured, and of the gel |\n\
          | `<taxel>_kpa` | reading above the unloaded baseline, kPa; NaN if it was not usable. Taxels: {taxels} |\n\
@@ -191,7 +191,8 @@ mod tests {
         }
     }
 
-    /// What the card says of the array is true in Python. `TWINTAC_PYTHON` names one with `numpy` and `pandas`.
+    /// The Python lines of the card read the array. `TWINTAC_PYTHON` names an interpreter with
+    /// `numpy` and `pandas`.
     #[test]
     fn the_lines_of_the_card_read_the_array() {
         let asked = std::env::var("TWINTAC_PYTHON");

@@ -1,4 +1,5 @@
-//! Telling shapes by touch with few real presses and many simulated ones (the paper's section IV-C).
+//! Classification of shapes by touch from few real presses and many simulated ones (the paper's
+//! section IV-C).
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,25 +17,26 @@ use twintac_work::{Progress, Work, WorkError};
 use crate::experiments::{PAPER_COMMAND, Paper};
 use crate::mixture::{Mixture, Simulated};
 
-/// Few trials of the bench among many simulated ones are shown so often that there are no more than this many of those for each.
+/// Bench trials are repeated in the training set if they are few, so that there are at most this
+/// many simulated trials for each.
 const SIMULATED_PER_REAL: usize = 5;
 
-/// So often a training says how it goes.
+/// Number of progress reports of a training.
 const SAYINGS: usize = 20;
 
-/// One way to train, over all seeds.
+/// The result of one training set, over all seeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShapesResult {
-    /// What was trained with.
+    /// The training set.
     #[serde(flatten)]
     pub mixture: Mixture,
-    /// Part of the test trials whose shape is told, seed by seed, %.
+    /// Percentage of the test trials whose shape is classified correctly, seed by seed.
     pub accuracy_percent: Vec<f64>,
-    /// All seeds together.
+    /// Confusion matrix of all seeds together.
     pub confusion: Confusion,
 }
 
-/// A training to do.
+/// One training: a training set and a seed.
 #[derive(Clone, Copy, Serialize)]
 struct Job {
     mixture: Mixture,
@@ -54,15 +56,15 @@ impl Job {
     }
 }
 
-/// All trainings.
+/// The inputs of all trainings.
 #[derive(Serialize)]
 struct Telling {
     classes: Vec<String>,
     settings: TrainSettings,
     jobs: Vec<Job>,
-    /// Of the bench.
+    /// Trials on the bench.
     trials: Finished,
-    /// Of the twins.
+    /// Trials of the twins.
     simulated: Finished,
 }
 
@@ -108,7 +110,7 @@ impl Stage for Telling {
 }
 
 impl Telling {
-    /// The trials as series of one sampling.
+    /// The trials as series, sampled in one way.
     fn sampled(&self, sampling: Sampling) -> Result<Keyed<Trials>, WorkError> {
         let read = |recording: Recording| trials_of(&recording, &self.classes, sampling);
         let simulated = |simulated: Simulated| {
@@ -124,19 +126,19 @@ impl Telling {
     }
 }
 
-/// One training and its test.
+/// The inputs of one training and its test.
 #[derive(Serialize)]
 struct Training<'a> {
     trials: &'a Keyed<Trials>,
     n_classes: usize,
     settings: &'a TrainSettings,
     job: Job,
-    /// It hears, and nothing depends on it.
+    /// Receives progress reports; the result does not depend on it.
     #[serde(skip)]
     said: Said<'a>,
 }
 
-/// What was said of a training.
+/// The progress reports of a training.
 struct Said<'a> {
     work: &'a Work<'a>,
     n_said: &'a AtomicUsize,
@@ -166,7 +168,7 @@ impl Recipe for Training<'_> {
     }
 }
 
-/// The trials of the bench and of the twins, sampled one way.
+/// The trials of the bench and of the twins, sampled in one way.
 struct Trials {
     real: Vec<Trial>,
     twin: Vec<Trial>,
@@ -174,8 +176,9 @@ struct Trials {
 }
 
 impl Trials {
-    /// What to learn from, and what to test with. The bench's trials of each shape are halved anew for each seed: so many of the first half to learn
-    /// from, all of the second to test with. The simulated ones are drawn anew as well.
+    /// Training and test trials. For each seed the bench's trials of each shape are divided into
+    /// two random halves: `real_trials` of the first half are for training, the whole second half
+    /// is for testing. The simulated trials are drawn at random as well.
     fn divide(&self, n_classes: usize, job: &Job) -> (Vec<Trial>, Vec<Trial>) {
         let Mixture {
             real_trials,
@@ -207,7 +210,7 @@ impl Trials {
 }
 
 impl Paper {
-    /// Trains on real and simulated trials in every mixture, and tests on real ones.
+    /// Trains on every training set, and tests on trials of the bench.
     pub(super) fn classify(
         &self,
         trials: Finished,
@@ -223,7 +226,7 @@ impl Paper {
         Ok(read_json(&finished.file("result.json"))?)
     }
 
-    /// The shapes in the order of their classes.
+    /// Names of the shapes, in the order of their classes.
     pub(super) fn shape_names(&self) -> Vec<String> {
         let indenters = self.sensor.sensor.indenters.iter();
         indenters.map(|indenter| indenter.name.clone()).collect()
@@ -238,7 +241,8 @@ impl Paper {
     }
 }
 
-/// The trials of a recording's presses, those of each shape in their order. A press that is not felt is left out, and one with missing readings.
+/// The trials of a recording, those of each shape in their order. Presses without a detected
+/// contact, and presses with missing readings, are left out.
 fn trials_of(recording: &Recording, classes: &[String], sampling: Sampling) -> Vec<Trial> {
     let trial = |press: &twintac_recording::Press| {
         Some(Trial {
@@ -249,7 +253,7 @@ fn trials_of(recording: &Recording, classes: &[String], sampling: Sampling) -> V
     recording.presses.iter().filter_map(trial).collect()
 }
 
-/// The readings of a press that misses none.
+/// The readings of a press, if none is missing.
 fn whole(press: &twintac_recording::Press) -> Option<&[Vec<f64>]> {
     let is_whole = press.taxels_kpa.iter().flatten().all(|kpa| kpa.is_finite());
     is_whole.then_some(&press.taxels_kpa)

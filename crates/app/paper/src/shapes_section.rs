@@ -1,4 +1,4 @@
-//! The section of the page on shapes told by touch.
+//! The section of the page on shape classification.
 
 use twintac_classify::Sampling;
 use twintac_plot::page::{Block, Card, Cell, Fact, Row, Table};
@@ -11,7 +11,9 @@ use crate::metrics::PaperMetrics;
 use crate::mixture::{Mixture, Simulated};
 use crate::shapes::ShapesResult;
 
-/// Training on the bench alone, with the paper's number of simulated trials of either twin, and with all of this one: a name, whose they are, and which.
+/// The compared training sets: the bench alone, with the paper's number of simulated trials of
+/// either twin, and with all of this project's twin. Each has a name, the source and the number of
+/// its simulated trials.
 fn ways(results: &[ShapesResult]) -> Vec<(String, Simulated, usize)> {
     let of_twin = results
         .iter()
@@ -22,7 +24,7 @@ fn ways(results: &[ShapesResult]) -> Vec<(String, Simulated, usize)> {
         .unwrap_or(0);
     let papers = PAPER_SIMULATED.min(all);
     let mut ways = vec![
-        ("bench alone".to_owned(), Simulated::None, 0),
+        ("bench only".to_owned(), Simulated::None, 0),
         (
             format!("and {papers} of the paper's twin"),
             Simulated::PaperTwin,
@@ -36,7 +38,7 @@ fn ways(results: &[ShapesResult]) -> Vec<(String, Simulated, usize)> {
     ways
 }
 
-/// What shapes were learned from, and how well they were told.
+/// The section: training sets, and accuracies.
 pub(super) fn shapes(metrics: &PaperMetrics, sensor: &Sensor) -> Vec<Block> {
     let by = |sampling: Sampling| {
         let results = metrics.shapes.iter();
@@ -80,7 +82,7 @@ pub(super) fn shapes(metrics: &PaperMetrics, sensor: &Sensor) -> Vec<Block> {
         Block::Cards(cards.collect()),
         Block::Figures(vec![figure(
             accuracies(
-                "Shapes told, over trials on the bench",
+                "Classification of shapes, over trials on the bench",
                 "trials of each shape on the bench",
                 over_real.collect(),
             ),
@@ -104,7 +106,7 @@ pub(super) fn shapes(metrics: &PaperMetrics, sensor: &Sensor) -> Vec<Block> {
     });
     let over_simulated: Vec<Series> = over_simulated.collect();
     if !over_simulated.is_empty() {
-        let title = "Shapes told, over trials of this twin";
+        let title = "Classification of shapes, over trials of this twin";
         let scene = accuracies(title, "simulated trials of each shape", over_simulated);
         blocks.push(Block::Figures(vec![figure(scene, metrics.provenance, "", None)]));
     }
@@ -122,7 +124,7 @@ pub(super) fn shapes(metrics: &PaperMetrics, sensor: &Sensor) -> Vec<Block> {
         })
         .collect();
     blocks.push(Block::Text(format!(
-        "A press is seen at twelve equal steps of load, so that its speed and its hold do not matter. The same classifier on samples at equal steps of time: {}.",
+        "A press is sampled at twelve equal steps of load, so that its speed and its hold have no effect. The same classifier on samples at equal steps of time: {}.",
         over_time.join("; ")
     ).into()));
     for way in [ways.first(), ways.last()].into_iter().flatten() {
@@ -173,7 +175,7 @@ fn table(results: &[ShapesResult]) -> Table {
     };
     let head = ["bench", "simulated", "by", "samples over", "accuracy"];
     Table {
-        caption: "Trials of each shape, and accuracy on trials of the bench that nothing was trained with: mean and standard deviation over seeds. The paper has \
+        caption: "Trials of each shape, and accuracy on held-out trials of the bench: mean and standard deviation over seeds. The paper has \
                   33.57 % with 20 real trials of each shape, and 95.0 % with 96 simulated ones as well."
             .into(),
         head: head.map(str::to_owned).to_vec(),
@@ -192,7 +194,9 @@ fn confusion(result: &ShapesResult, name: &str, sensor: &Sensor) -> Table {
             .into()
     });
     Table {
-        caption: format!("Which shape (row) was taken for which (column): {name}, all seeds."),
+        caption: format!(
+            "Confusion matrix, true shape (row) and classified shape (column): {name}, all seeds."
+        ),
         head: [String::new()].into_iter().chain(shapes()).collect(),
         rows: rows.collect(),
     }

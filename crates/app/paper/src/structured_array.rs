@@ -1,11 +1,11 @@
-//! Frames as a structured array that NumPy reads (NumPy enhancement proposal 1, format 1.0).
+//! Frames as a structured array for NumPy (NumPy Enhancement Proposal 1, format 1.0).
 
 use digitac::PairedPress;
 
-/// Bytes of a value, from a press, its number and the number of its frame.
+/// The bytes of a value, from a press, its number and the number of its frame.
 pub(super) type Value = Box<dyn Fn(&PairedPress, usize, usize) -> Vec<u8>>;
 
-/// A column: its name, NumPy's type of it, and its values.
+/// A column: its name, its NumPy type, and its values.
 pub(super) struct Column {
     pub(super) name: String,
     pub(super) kind: &'static str,
@@ -21,7 +21,7 @@ pub(super) fn float(name: impl Into<String>, value: impl Fn(&PairedPress, usize)
     }
 }
 
-/// The file of all frames, press by press.
+/// The bytes of a file with all frames, press by press.
 pub(super) fn array(presses: &[PairedPress], columns: &[Column]) -> Vec<u8> {
     let fields = columns
         .iter()

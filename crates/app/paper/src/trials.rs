@@ -1,4 +1,4 @@
-//! The presses that shapes are told by: of the bench, and of the twins.
+//! The presses from which shapes are classified: on the bench, and of the twins.
 
 use std::path::Path;
 
@@ -16,11 +16,11 @@ use crate::experiments::{PAPER_COMMAND, Paper};
 use crate::level::Level;
 use crate::mixture::Simulated;
 
-/// The simulated presses are drawn with another seed than the real ones.
+/// Offset of the seed, so that simulated presses differ from those of the bench.
 const SIMULATED_SEED: u64 = 1_000_000;
 
 impl Paper {
-    /// The presses of the bench that shapes are told by.
+    /// The presses of the bench from which shapes are classified.
     pub(super) fn trials(&self) -> Result<Run, WorkError> {
         let planned = self.shapes(2 * self.effort.real_trials(), self.seed)?;
         let source = format!("{} trials on the emulated bench", planned.presses.len());
@@ -34,7 +34,7 @@ impl Paper {
         Planned::of(&protocol.with_random_places(n_trials), &self.sensor.sensor, seed)
     }
 
-    /// Presses that the twins of a run would feel; `paper_twin` is the stage of the paper's.
+    /// The presses that the twins simulate. `paper_twin` is the stage of the paper's network.
     pub(super) fn simulated(
         &self,
         data: &Run,
@@ -51,7 +51,7 @@ impl Paper {
     }
 }
 
-/// What the twins feel of the trials.
+/// The inputs of the simulated trials.
 #[derive(Serialize)]
 struct SimulatedTrials<'a> {
     felt: &'a [PressPlan],

@@ -1,4 +1,4 @@
-//! The sensor under a ball (the paper's section IV-A).
+//! Characterization of the sensor under a ball (the paper's section IV-A).
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use twintac_work::{Planned, Progress, WorkError};
 
 use crate::experiments::{PAPER_COMMAND, Paper};
 
-/// The figures of the paper's characterization; `None` where the presses do not give one.
+/// The figures of the paper's characterization; `None` if the presses do not give a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorFigures {
     /// Mean sensitivity of the taxels under the 25 mm ball, kPa/N.
@@ -44,7 +44,8 @@ impl SensorFigures {
 }
 
 impl Paper {
-    /// The sensor under the paper's ball, on the bench that the paper's sensitivity is tuned on.
+    /// Characterizes the sensor under the paper's ball, with the default emulator configuration,
+    /// which is tuned to the paper's sensitivity.
     pub(super) fn characterize(&self) -> Result<SensorFigures, WorkError> {
         let sensor = &self.sensor.sensor;
         let protocol = CHARACTERIZE_PROTOCOL;
@@ -59,7 +60,7 @@ impl Paper {
     }
 }
 
-/// What the sensor does under the ball.
+/// The inputs of the characterization.
 #[derive(Serialize)]
 struct Characterizing<'a> {
     sensor: &'a Keyed<SensorFile>,

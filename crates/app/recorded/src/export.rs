@@ -1,4 +1,4 @@
-//! Frames of logs as tables, and logs for others.
+//! Export of logs: frames as tables, and files of other formats.
 
 use std::path::{Path, PathBuf};
 
@@ -10,35 +10,36 @@ use twintac_work::{Progress, WorkError, read_text};
 
 use crate::recorded::Recorded;
 
-/// What was written of a log.
+/// The result of exporting a log as a table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Exported {
     /// The log.
     pub log: PathBuf,
-    /// Its table (Parquet).
+    /// The table (Parquet).
     pub table: PathBuf,
-    /// What the log has.
+    /// The content of the log.
     #[serde(flatten)]
     pub found: LogFound,
 }
 
-/// What a log has that was written as something else.
+/// The content of an exported log.
 #[derive(Clone, Debug, Serialize)]
 pub struct LogFound {
     /// Tactile frames.
     pub frames: u64,
-    /// Gaps in them, marked by the recorder or left by damage.
+    /// Gaps in the frames, marked by the recorder or caused by damage.
     pub gaps: u64,
     /// Time of the last frame, s.
     pub last_s: f64,
-    /// Whether the log was whole and as it was written.
+    /// Whether the log was complete and unchanged.
     pub is_whole: bool,
-    /// What is wrong with a log that was cut or damaged, and what became of it, in words.
+    /// For a log that was cut or damaged: what is wrong, and where its recovered copy is, in words.
     #[serde(skip)]
     pub recovered: Option<String>,
 }
 
-/// Writes a log's frames as a Parquet table into `folder`, or beside the log. A log that was cut or damaged is made whole, in a file beside it.
+/// Writes a log's frames as a Parquet table into `folder`, or beside the log. If the log was cut or
+/// damaged, a recovered copy is written beside it.
 ///
 /// # Errors
 /// A file that is no log; a file that cannot be written.
@@ -59,23 +60,25 @@ pub fn export(log: &Path, folder: Option<&Path>) -> Result<Exported, WorkError> 
     })
 }
 
-/// What was written of a log for ROS 2.
+/// The result of exporting a log for ROS 2.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExportedBag {
     /// The log.
     pub log: PathBuf,
     /// The bag (MCAP).
     pub bag: PathBuf,
-    /// What the log has.
+    /// The content of the log.
     #[serde(flatten)]
     pub found: LogFound,
 }
 
-/// Writes a log as a bag of ROS 2 with standard messages alone (MCAP), of the log's name, into `folder`. `topics` are what a topic holds and what it is to be
-/// called, as for [`TopicNames::rename`]. A log that was cut or damaged is made whole, in a file beside it.
+/// Writes a log as a ROS 2 bag (MCAP) with standard messages alone, of the log's name, into
+/// `folder`. Each entry of `topics` is the content of a topic and its new name, as for
+/// [`TopicNames::rename`]. If the log was cut or damaged, a recovered copy is written beside it.
 ///
 /// # Errors
-/// A file that is no log; a bag that is there already or cannot be written; names that ROS does not take, or two topics of one.
+/// A file that is no log; a bag that exists already or cannot be written; names that ROS does not
+/// allow, or two topics of one name.
 pub fn export_ros(log: &Path, folder: &Path, topics: &[(String, String)]) -> Result<ExportedBag, WorkError> {
     let mut names = TopicNames::default();
     for (topic, name) in topics {
@@ -91,7 +94,7 @@ pub fn export_ros(log: &Path, folder: &Path, topics: &[(String, String)]) -> Res
     })
 }
 
-/// What was found in a log, and what becomes of it.
+/// The content of a log; a cut or damaged one is recovered.
 fn found(log: &Path, exported: twintac_log::Exported) -> Result<LogFound, WorkError> {
     Ok(LogFound {
         frames: exported.frames,
@@ -102,17 +105,17 @@ fn found(log: &Path, exported: twintac_log::Exported) -> Result<LogFound, WorkEr
     })
 }
 
-/// What is wrong with a log by its ending, and what becomes of it.
+/// What is wrong with a log by its ending, and where its recovered copy is.
 fn recovered(log: &Path, ending: Ending) -> Result<Option<String>, WorkError> {
     let problem = match ending {
         Ending::Whole => return Ok(None),
         Ending::Damaged => "is damaged: its bytes have changed since it was written",
-        Ending::Cut => "was cut",
+        Ending::Cut => "is truncated",
     };
     Ok(Some(format!("{problem}; {}", make_whole(log)?)))
 }
 
-/// A cut log's name when it is whole.
+/// The name of a cut log's recovered copy.
 fn whole_name(log: &Path) -> PathBuf {
     match log.extension() {
         Some(extension) if extension == "partial" => log.with_extension(""),
@@ -120,23 +123,25 @@ fn whole_name(log: &Path) -> PathBuf {
     }
 }
 
-/// Puts a whole log beside a cut one; how that went.
+/// Writes the recovered copy of a cut log beside it, and describes the result.
 fn make_whole(log: &Path) -> Result<String, WorkError> {
     match recover(log) {
         Ok(recovered) => Ok(format!(
-            "all that can be read stands in {}",
+            "everything that can be read is in {}",
             recovered.path.display()
         )),
-        Err(LogError::Exists { file }) => Ok(format!("{file} is there already")),
+        Err(LogError::Exists { file }) => Ok(format!("{file} exists already")),
         Err(error) => Err(error.into()),
     }
 }
 
-/// Writes recorded presses, Parquet files and MCAP logs, as one LeRobot data set into a folder that is not there yet. Its card says from which files it is made, and of a data
-/// set of `twintac dataset` what that is made from.
+/// Writes recorded presses, of Parquet files and MCAP logs, as one LeRobot data set into a new
+/// folder. The data set's card names the source files and, for a data set of `twintac dataset`, its
+/// inputs.
 ///
 /// # Errors
-/// A file that is neither, or cannot be read; recordings that do not belong together; a folder that is there already.
+/// A file of another format, or one that cannot be read; recordings that do not belong together; a
+/// folder that exists already.
 pub fn export_lerobot(
     files: &[PathBuf],
     folder: &Path,

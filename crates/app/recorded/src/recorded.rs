@@ -1,4 +1,4 @@
-//! Recordings of a sensor, read to characterize it.
+//! Recordings of a sensor, read for characterization.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use twintac_sensor::Sensor;
 use twintac_store::{write_file, write_json};
 use twintac_work::{At, Progress, WorkError};
 
-/// The file of coefficients that readings are compensated with.
+/// Name of the file of coefficients of temperature compensation.
 pub const COMPENSATION: &str = "temperature.toml";
 
 /// Recorded presses, and frames outside of presses.
@@ -22,11 +22,14 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Reads Parquet files of presses or of frames; MCAP logs, also cut ones; and, with an import description, logs of others. Logs that were set aside,
-    /// cut ones beside what was recovered of them, and presses in which the bench stopped are left out, and `progress` is told.
+    /// Reads Parquet files of presses or of frames, MCAP logs (also cut ones), and, with an import
+    /// description, logs of other laboratories. It leaves out logs that were set aside, cut logs
+    /// beside their recovered copies, and presses in which the bench stopped, and notes this in
+    /// `progress`.
     ///
     /// # Errors
-    /// A file that is none of these, or cannot be read; recordings that do not belong together; none that is left.
+    /// A file of another format, or one that cannot be read; recordings that do not belong
+    /// together; no file that is left.
     pub fn read(
         files: &[PathBuf],
         import: Option<&Import>,
@@ -57,13 +60,14 @@ impl Recorded {
             }
         }
         let recording = all.ok_or_else(|| {
-            let problem = "every log given was set aside by `record`, as its press was not finished";
+            let problem =
+                "all of these logs were set aside by `record`, because their presses were not finished";
             WorkError::Input(problem.to_owned())
         })?;
         Ok(Self { recording, logs })
     }
 
-    /// What the sensor does, as far as the presses tell.
+    /// What the sensor does, as far as the presses show it.
     ///
     /// # Errors
     /// Presses of another sensor, or none.
@@ -76,8 +80,9 @@ impl Recorded {
         )?)
     }
 
-    /// Writes `report.html`, `datasheet.html` and `characterization.json` of what was found; and `temperature.toml`, which readings are compensated with,
-    /// if the logs tell how zeros move with temperature.
+    /// Writes `report.html`, `datasheet.html` and `characterization.json`. If the logs show how
+    /// zeros move with temperature, it also writes `temperature.toml`, the coefficients with which
+    /// readings are compensated.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -92,7 +97,7 @@ impl Recorded {
 }
 
 impl From<Recording> for Recorded {
-    /// Presses alone.
+    /// A recording of presses alone.
     fn from(recording: Recording) -> Self {
         Self {
             recording,
@@ -101,7 +106,7 @@ impl From<Recording> for Recorded {
     }
 }
 
-/// A recording without presses, of the sensor that some frames are of.
+/// A recording without presses, of the sensor of these frames.
 fn without_presses(frames: &Frames) -> Recording {
     Recording {
         sensor: frames.sensor.clone(),
@@ -111,7 +116,7 @@ fn without_presses(frames: &Frames) -> Recording {
     }
 }
 
-/// A log of others: its presses, or its frames, which are added to `logs`.
+/// A log of another laboratory: its presses are returned, or its frames are added to `logs`.
 fn imported(
     file: &Path,
     import: &Import,
@@ -133,15 +138,16 @@ fn imported(
     Ok(recording)
 }
 
-/// The files to read: without logs that were set aside, and without cut ones beside what was recovered of them.
+/// The files to read: without logs that were set aside, and without cut logs beside their recovered
+/// copies.
 fn to_read(files: &[PathBuf], imports: bool, progress: &dyn Progress) -> Result<Vec<PathBuf>, WorkError> {
     let mut kept = Vec::new();
     for file in files {
         let ends_with = |end: &str| file.extension().is_some_and(|extension| extension == end);
         if !is_log(file) && !is_parquet(file) && !imports {
             return Err(WorkError::Input(format!(
-                "{} is no Parquet file and no MCAP log; others need a description of their columns, `--import`, of which `twintac import --guess` \
-                 makes a first one",
+                "{} is neither a Parquet file nor an MCAP log; other files need an import description, `--import`, which `twintac import --guess` \
+                 drafts",
                 file.display()
             )));
         }
@@ -149,7 +155,7 @@ fn to_read(files: &[PathBuf], imports: bool, progress: &dyn Progress) -> Result<
         if is_log(file) && name.contains(".try-") {
             progress.note(&format!("{} was set aside and is left out", file.display()));
         } else if ends_with("partial") && files.contains(&file.with_extension("")) {
-            progress.note(&format!("{} is there whole and is left out", file.display()));
+            progress.note(&format!("{} has a complete copy and is left out", file.display()));
         } else {
             kept.push(file.clone());
         }
@@ -166,7 +172,7 @@ fn is_log(file: &Path) -> bool {
     name.ends_with(".mcap") || name.ends_with(".mcap.partial")
 }
 
-/// What a log tells.
+/// The content of a log.
 struct Log {
     recording: Recording,
     /// Its frames outside of presses.
@@ -174,7 +180,8 @@ struct Log {
 }
 
 impl Log {
-    /// Reads a log, without the press in which the bench stopped. What is odd about it is noted.
+    /// Reads a log, without the press in which the bench stopped. Remarks of the reader are noted
+    /// in `progress`.
     fn read(file: &Path, progress: &dyn Progress) -> Result<Self, WorkError> {
         let reader = LogReader::open(file)?;
         let description = reader.description();
@@ -209,7 +216,7 @@ impl Log {
                 let is_finished = press.time_s[0] < unfinished_ns as f64 * 1e-9;
                 if !is_finished {
                     progress.note(&format!(
-                        "{}: press `{}` was not finished when the bench stopped, and is left out",
+                        "{}: press `{}` was not finished when the test setup stopped, and is left out",
                         file.display(),
                         press.name
                     ));

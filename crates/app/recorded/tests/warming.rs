@@ -1,4 +1,5 @@
-//! Zeros that drift with temperature, on the emulated bus: how much is found in one log, and taken off what is read afterwards.
+//! Drift of zeros with temperature, on the emulated bus: how much of it one log shows, and how much
+//! compensation removes from later readings.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -22,17 +23,17 @@ use twintac_work::Silent;
 /// Time between frames, s.
 const STEP_S: f64 = 0.2;
 
-/// Frames of a second.
+/// Frames per second.
 const FRAMES: u32 = 5;
 
-/// What each taxel's zero moves by, kPa/K. The largest makes 8 kPa of 4 K.
+/// Temperature coefficient of each taxel's zero, kPa/K. The largest makes 8 kPa of 4 K.
 const KPA_PER_K: [f64; 8] = [2.0, 0.5, -0.3, 0.0, 1.1, -1.7, 0.05, 0.9];
 
-/// The chips warm up, and nothing touches.
+/// The chips warm up, and nothing touches the sensor.
 #[derive(Clone, Copy)]
 struct Warming {
     start_c: f64,
-    /// How much warmer in the end, K.
+    /// The rise of temperature at the end, K.
     by_k: f64,
     time_s: f64,
 }
@@ -57,11 +58,11 @@ impl Physics for Warming {
     }
 }
 
-/// A sensor on the emulated bus that warms up, frame by frame.
+/// A sensor on the emulated bus that warms up, read frame by frame.
 struct Desk {
     reader: FrameReader<Bus, LabClock, BoxedClock, TAXELS>,
     clock: LabClock,
-    /// When the next frame is asked for, s.
+    /// When the next frame is due, s.
     due_s: f64,
     about: About,
 }
@@ -98,7 +99,7 @@ impl Desk {
         self.reader.read().unwrap()
     }
 
-    /// Writes a log of so many minutes.
+    /// Writes a log of this many minutes.
     fn log(mut self, file: &Path, minutes: u32) {
         let mut log = LogWriter::new(LogFile::create(file).unwrap(), &self.about.description()).unwrap();
         for _ in 0..minutes * 60 * FRAMES {
@@ -110,7 +111,7 @@ impl Desk {
     }
 }
 
-/// Characterizes a log without a press, and writes what was found.
+/// Characterizes a log without presses, and returns the coefficients that were found.
 fn characterized(log: PathBuf, folder: &Path) -> Compensation {
     let sensor = SensorFile::phystac().unwrap().sensor;
     let recorded = Recorded::read(&[log], None, &Silent).unwrap();
@@ -146,7 +147,7 @@ fn zeros_that_drift_by_eight_kpa_an_hour_are_compensated_to_a_twentieth_of_a_kpa
         );
     }
 
-    // Another day, another warmth: evenly 4 K in an hour.
+    // Another day, with another course of temperature: 4 K in an hour, linearly.
     let later = Warming {
         start_c: 24.0,
         by_k: 400.0,
@@ -165,7 +166,7 @@ fn zeros_that_drift_by_eight_kpa_an_hour_are_compensated_to_a_twentieth_of_a_kpa
     };
     let mut worst_kpa = [0.0_f64; 2];
     for _ in 0..3600 {
-        // Single readings have noise; drift is what a second of them has in common.
+        // Single readings are noisy; the mean of a second shows the drift.
         let mut means_kpa = [[0.0; 8]; 2];
         for _ in 0..FRAMES {
             let reading = desk.read();

@@ -1,4 +1,5 @@
-//! How the error of an adapted twin falls with the number of presses, beside a twin that was trained on all of them.
+//! The error of an adapted twin over the number of presses that it was adapted with, beside a twin
+//! that was trained on all presses.
 
 use std::path::Path;
 
@@ -15,35 +16,37 @@ use crate::Run;
 use crate::cross_validation::Spread;
 use crate::stages::training::HELD_OUT;
 
-/// Which numbers of presses to adapt with, and how often.
+/// The numbers of presses to adapt with, and the number of seeds.
 #[derive(Clone, Debug)]
 pub struct CurvePlan {
     /// Numbers of presses.
     pub presses: Vec<usize>,
-    /// How many times presses are chosen, with seeds from 1 on.
+    /// Number of seeds, from 1 on. Each seed chooses other presses.
     pub seeds: u64,
 }
 
-/// Errors of an adapted twin over the number of presses that it was adapted with, in % of the largest reading of the file.
+/// Errors of an adapted twin over the number of presses that it was adapted with, in % of the
+/// largest reading of the file.
 #[derive(Clone, Debug, Serialize)]
 pub struct AdaptationCurve {
-    /// Where the readings come from.
+    /// Provenance of the readings.
     pub provenance: Provenance,
     /// The sensor that was adapted to.
     pub sensor: String,
-    /// Files that taught the twin that was adapted.
+    /// Files that the adapted twin was originally trained on.
     pub learned_from: Vec<String>,
     /// What the figures mean.
     pub definition: String,
-    /// Taxels left out of the headline.
+    /// Taxels excluded from the headline figure.
     pub taxels_left_out: Vec<String>,
-    /// Presses that no twin saw: the held-out ones of the run. They judge.
+    /// Number of test presses: the run's held-out ones, on which no twin was trained.
     pub judged_presses: usize,
-    /// Presses that presses to adapt with were chosen from: those that taught the run's own twin.
+    /// Number of presses from which those to adapt with were chosen: the training and validation
+    /// presses of the run's own twin.
     pub teaching_presses: usize,
-    /// The twin as it was learned.
+    /// Errors of the original twin, without adaptation.
     pub as_learned: Figures,
-    /// The run's own twin, trained on all of its teaching presses.
+    /// Errors of the run's own twin, trained on all of its training presses.
     pub trained_on_all: Figures,
     /// The adapted twins.
     pub points: Vec<AdaptationPoint>,
@@ -56,13 +59,13 @@ pub struct AdaptationPoint {
     pub presses: usize,
     /// Error of the nearest taxel in contact, over the seeds; `None` if no frame is in contact.
     pub nearest_in_contact: Option<Spread>,
-    /// The mean over that of the twin that was trained on all.
+    /// The mean divided by the error of the twin that was trained on all presses.
     pub over_trained_on_all: Option<f64>,
-    /// Each seed's errors, and its presses.
+    /// The errors and the presses of each seed.
     pub seeds: Vec<SeedOfPoint>,
 }
 
-/// A twin that was adapted with presses of one seed's choice.
+/// A twin that was adapted with the presses that one seed chose.
 #[derive(Clone, Debug, Serialize)]
 pub struct SeedOfPoint {
     /// The seed.
@@ -74,11 +77,13 @@ pub struct SeedOfPoint {
     pub figures: Figures,
 }
 
-/// Adapts a model to the sensor of a run, with few and with more of its teaching presses, and judges each twin on the run's held-out presses, beside
-/// the run's own twin. Writes `curve.json`, `curve.svg` and `curve.png`.
+/// Adapts a model to the sensor of a run, with several numbers of its training presses, and
+/// evaluates each adapted twin on the run's test presses, beside the run's own twin. Writes
+/// `curve.json`, `curve.svg` and `curve.png`.
 ///
 /// # Errors
-/// A run that is not evaluated; fewer teaching presses than asked for; a model that cannot be adapted.
+/// A run that is not evaluated; fewer training presses than asked for; a model that cannot be
+/// adapted.
 pub fn adaptation_curve(
     model_folder: &Path,
     run: &Run,
@@ -91,7 +96,7 @@ pub fn adaptation_curve(
     let teachers = [&split.train[..], &split.validation].concat();
     if let Some(most) = plan.presses.iter().find(|count| **count > teachers.len()) {
         return Err(WorkError::Input(format!(
-            "{most} presses to adapt with are more than the {} that taught the run's own twin; ask for fewer with --curve",
+            "{most} presses to adapt with are more than the {} training presses of the run's own twin; give fewer with --curve",
             teachers.len()
         )));
     }
@@ -160,7 +165,8 @@ pub fn adaptation_curve(
 }
 
 impl AdaptationCurve {
-    /// The plot of it: error over the number of presses, with the smallest and the largest of the seeds, and the twin that was trained on all.
+    /// The plot: error over the number of presses, with the smallest and the largest value of the
+    /// seeds, and the error of the twin that was trained on all presses.
     #[must_use]
     pub fn scene(&self) -> Scene {
         let series =
@@ -187,7 +193,7 @@ impl AdaptationCurve {
         let trained = format!("trained on all {} presses", self.teaching_presses);
         Panels {
             title: format!(
-                "A twin adapted to {}, {} data; {} presses judge",
+                "A twin adapted to {}, {} data; {} test presses",
                 self.sensor, self.provenance, self.judged_presses
             ),
             x_label: "presses to adapt with".to_owned(),

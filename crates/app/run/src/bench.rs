@@ -14,10 +14,11 @@ use twintac_work::WorkError;
 use crate::Run;
 use crate::run::{LOGS, SENSOR, keyed};
 
-/// The logs in a run's folder, if there are any, are of this sensor, bench and placement: nothing has to be written to see that they are not.
+/// Checks that the logs in a run's folder, if there are any, belong to this sensor, bench and
+/// placement. Nothing is written.
 ///
 /// # Errors
-/// They are of others: what differs.
+/// The logs belong to something else; the error names the difference.
 pub fn check_logs(
     folder: &Path,
     sensor: &SensorFile,
@@ -29,10 +30,11 @@ pub fn check_logs(
 }
 
 impl Run {
-    /// The emulated bench, switched on, with faults. What its gel answers at the places of the plans is computed before, and kept in the run's folder.
+    /// Starts the emulated bench, with faults. The response of its gel at the locations of the
+    /// plans is computed first, and kept in the run's folder.
     ///
     /// # Errors
-    /// A place that the gel cannot be pressed at; a sensor that is not read this way.
+    /// A location at which the gel cannot be pressed; a sensor that is not read over a bus.
     pub fn emulated_bench(
         &self,
         reality: &Reality,
@@ -44,11 +46,13 @@ impl Run {
         OpenBench::emulate(&self.sensor().sensor, reality, &tables, settings, faults)
     }
 
-    /// Carries presses out on a bench, those that are not done yet, and makes the run's recordings of them. `mount` has a person mount an
-    /// indenter, as [`Operator::mount`](twintac_press::Operator::mount) says; the emulated bench asks nobody. Setting `interrupt` stops the bench.
+    /// Carries out the presses that are not done yet on a bench, and makes the run's recordings of
+    /// the logs. `mount` asks a person to mount an indenter, as
+    /// [`Operator::mount`](twintac_press::Operator::mount) does; the emulated bench does not call
+    /// it. Setting `interrupt` stops the bench.
     ///
     /// # Errors
-    /// Those of [`OpenBench::press`], and presses that cannot be collected.
+    /// Those of [`OpenBench::press`]; presses that cannot be collected.
     pub fn press(
         &self,
         bench: &mut OpenBench,

@@ -1,14 +1,14 @@
-//! Files that this crate carries with it: what stands for a file that is not named.
+//! Files that are compiled into this crate. They are used if no file is named.
 
 use std::path::Path;
 
 use twintac_lab::Reality;
 use twintac_work::{WorkError, read_text};
 
-/// A file that people copy and edit, as it was when this crate was compiled.
+/// A file that people can copy and edit, as it was when this crate was compiled.
 #[derive(Clone, Copy, Debug)]
 pub struct BuiltIn {
-    /// Its name, for errors.
+    /// Its name, for error messages.
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
@@ -32,7 +32,7 @@ pub const MATERIAL_PROTOCOL: BuiltIn = BuiltIn {
     text: include_str!("../built_in/material.toml"),
 };
 
-/// The protocol of the trials that shapes are told by.
+/// The protocol of the trials from which shapes are classified.
 pub const SHAPES_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/shapes.toml",
     text: include_str!("../built_in/shapes.toml"),
@@ -44,19 +44,19 @@ pub const MAPS_PROTOCOL: BuiltIn = BuiltIn {
     text: include_str!("../built_in/maps.toml"),
 };
 
-/// The protocol that a sensor is characterized with.
+/// The protocol for the characterization of a sensor.
 pub const CHARACTERIZE_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/characterize.toml",
     text: include_str!("../built_in/characterize.toml"),
 };
 
-/// The imperfections of the emulated bench, from a file or without one.
+/// The default emulator configuration.
 pub(crate) const REALITY: BuiltIn = BuiltIn {
     name: "realities/default.toml",
     text: include_str!("../built_in/default.toml"),
 };
 
-/// The realities that are known by the names of their files.
+/// The built-in emulator configurations, found by the names of their files.
 const REALITIES: [BuiltIn; 3] = [
     REALITY,
     BuiltIn {
@@ -69,14 +69,14 @@ const REALITIES: [BuiltIn; 3] = [
     },
 ];
 
-/// How the emulated bench presses.
+/// The hardware configuration of the emulated bench.
 pub const LAB_RIG: BuiltIn = BuiltIn {
     name: "rigs/lab.toml",
     text: include_str!("../built_in/lab.toml"),
 };
 
 impl BuiltIn {
-    /// Name and text of a file, or without one of this.
+    /// Name and text of a file, or of this built-in file if none is named.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -88,11 +88,11 @@ impl BuiltIn {
     }
 }
 
-/// The imperfections of the emulated bench, by the name of a reality that comes with this crate, such as `harder`, or from a file; without
-/// either those of [`REALITY`].
+/// The emulator configuration by the name of a built-in one, such as `harder`, or from a file. The
+/// default is [`REALITY`].
 ///
 /// # Errors
-/// A file that cannot be read or is wrong; a name that there is not.
+/// A file that cannot be read or is wrong; a name that is not built in.
 pub fn reality(named: Option<&Path>) -> Result<Reality, WorkError> {
     let stem = |built_in: &BuiltIn| Path::new(built_in.name).file_stem().map(Path::new);
     let known = REALITIES
@@ -106,7 +106,7 @@ pub fn reality(named: Option<&Path>) -> Result<Reality, WorkError> {
                 .filter_map(|built_in| Some(stem(built_in)?.display().to_string()))
                 .collect();
             return Err(WorkError::Input(format!(
-                "there is no reality `{}`, neither as a file nor built in; built in are {}",
+                "there is no emulator configuration `{}`, neither as a file nor built in; built in are {}",
                 file.display(),
                 names.join(", ")
             )));
@@ -120,7 +120,8 @@ pub fn reality(named: Option<&Path>) -> Result<Reality, WorkError> {
 mod tests {
     use super::*;
 
-    /// The copies in this package are symbolic links to the files that people edit; where links are not kept, they must be equal.
+    /// The copies in this package are symbolic links to the files that people edit. Where links are
+    /// not kept, the copies must be equal.
     #[test]
     fn what_is_built_in_is_what_people_edit() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");

@@ -1,4 +1,4 @@
-//! A run judged many times over: for several seeds, and for several ways to hold presses out.
+//! Cross-validation of a run: for several seeds, and for several ways to hold presses out.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,35 +17,38 @@ use crate::Run;
 use crate::settings::ResolvedSettings;
 use crate::stages::simulation::{Simulation, contacts};
 
-/// The folder of what was judged.
+/// Name of the folder of the results.
 const FOLDER: &str = "cross_validation";
 
-/// What to judge.
+/// What to evaluate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrossValidationPlan {
-    /// What is held out together, one after the other.
+    /// The ways to hold presses out, one after the other.
     pub held_out: Vec<HeldOut>,
     /// Seeds, from 1 to this.
     pub seeds: u64,
-    /// Whether each step of the twin is also left out in turn, to see its gain; by place.
+    /// Whether to run an ablation: each step of the twin is also left out in turn, with presses
+    /// held out by location.
     pub ablation: bool,
-    /// Whether the intervals of the twins are judged as well, which takes several times as long; not where a part is left out.
+    /// Whether the twins' intervals are evaluated as well, which takes several times as long. Not
+    /// done in the ablation.
     pub intervals: bool,
 }
 
-/// What a twin is made without.
+/// A step that is left out of the twin in the ablation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Without {
-    /// Readings are proportional to what the gel does.
+    /// The static nonlinearity of the ports: readings are proportional to the elastic response of
+    /// the gel.
     PortLaw,
-    /// The gel rests before each press.
+    /// The history: the gel is at rest before each press.
     History,
-    /// The tip is a ball.
+    /// The correction factor: the tip is a ball.
     SmoothFactor,
-    /// Ports are where and as wide as described.
+    /// The fit of the ports: they have the described positions and radii.
     Ports,
-    /// Barometers read what the gel does at once.
+    /// Viscoelastic relaxation: readings follow the gel's elastic response without delay.
     Memory,
 }
 
@@ -62,11 +65,11 @@ impl Without {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::PortLaw => "port law",
+            Self::PortLaw => "static nonlinearity",
             Self::History => "history",
-            Self::SmoothFactor => "smooth factor",
-            Self::Ports => "places and radius of the ports",
-            Self::Memory => "memory",
+            Self::SmoothFactor => "correction factor",
+            Self::Ports => "positions and radius of the ports",
+            Self::Memory => "relaxation",
         }
     }
 
@@ -100,7 +103,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// `None` of nothing.
+    /// `None` for no values.
     pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let n = values.len() as f64;
         let mean_percent = values.iter().sum::<f64>() / n;
@@ -112,66 +115,70 @@ impl Spread {
     }
 }
 
-/// How sure twins are, over all seeds.
+/// Figures of the twins' prediction intervals and OOD scores, over all seeds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CertaintySpread {
-    /// Part of the readings within their interval; it promises 90 %.
+    /// Coverage: percentage of the readings within their interval; the nominal value is 90 %.
     pub covered: Option<Spread>,
-    /// The same of frames in contact.
+    /// Coverage of frames in contact.
     pub covered_in_contact: Option<Spread>,
-    /// Mean width of the intervals of frames in contact, over the largest reading of the file.
+    /// Mean width of the intervals of frames in contact, % of the largest reading of the file.
     pub width_in_contact: Option<Spread>,
-    /// Part of the frames in contact that is flagged as unlike what taught.
+    /// Percentage of the frames in contact that are flagged as out-of-distribution.
     pub flagged: Option<Spread>,
-    /// How well what was held out is told from what taught: the area under the curve of true over false alarms.
+    /// AUROC of the OOD score, held-out contacts against those of training, %.
     pub told_apart: Option<Spread>,
 }
 
-/// The judgements of one seed.
+/// The evaluations of one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfSeed {
     /// The seed.
     pub seed: u64,
-    /// One for each file, indenter or taxel that was held out, or one alone.
+    /// One for each file, indenter or taxel that was held out, or a single one.
     pub judgements: Vec<Judgement>,
 }
 
-/// One way to hold out, over all seeds. Figures are of the headline: nearest taxel, frames in contact.
+/// One way to hold presses out, over all seeds. Errors are those of the headline figure: nearest
+/// taxel, frames in contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrossValidated {
     /// What was held out together.
     pub held_out: HeldOut,
-    /// What the twin was made without.
+    /// The step that was left out of the twin, if any.
     pub without: Option<Without>,
-    /// The variant that validation presses chose, seed by seed; `None` if some seed has no frame in contact.
+    /// Error of the variant that the validation presses chose, seed by seed; `None` if a seed has
+    /// no frame in contact.
     pub twin: Option<Spread>,
-    /// Each variant.
+    /// Error of each variant.
     pub variants: BTreeMap<Variant, Spread>,
-    /// A power of depth times a function of distance, fitted to the same presses.
+    /// Error of the parametric baseline, fitted to the same presses: a power of depth times a
+    /// function of distance.
     pub kernel: Option<Spread>,
-    /// How sure the twins were.
+    /// Figures of intervals and OOD scores.
     #[serde(default)]
     pub certainty: CertaintySpread,
-    /// Part of the frames that lie deeper than the simulation went, %; they are scored all the same.
+    /// Percentage of the frames that lie deeper than the simulation reached. They are scored as
+    /// well.
     pub frames_not_simulated_percent: Option<f64>,
-    /// Everything, seed by seed.
+    /// All results, seed by seed.
     pub seeds: Vec<OfSeed>,
 }
 
-/// A run judged many times over.
+/// The cross-validation of a run: `cross_validation/result.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrossValidation {
     /// The sensor's name.
     pub sensor: String,
-    /// Where the readings come from.
+    /// Provenance of the readings.
     pub provenance: Provenance,
-    /// Taxels left out of the headline.
+    /// Taxels excluded from the headline figure.
     pub taxels_left_out: Vec<String>,
-    /// One row for each way to hold out, and each part that was left out.
+    /// One row for each way to hold presses out, and for each step of the ablation.
     pub rows: Vec<CrossValidated>,
 }
 
-/// One row's settings, and its divisions with their seeds.
+/// One row's settings, and its folds with their seeds.
 struct Row {
     held_out: HeldOut,
     without: Option<Without>,
@@ -180,12 +187,14 @@ struct Row {
 }
 
 impl Run {
-    /// Makes and judges twins anew for each seed and each way to hold presses out: nothing of one knows what another has seen. Tables over
-    /// depth are shared: those of the run, or, if the tip's radius is unknown, tables of all places for each radius. Writes
+    /// Trains and evaluates twins anew for each seed and each way to hold presses out. No twin uses
+    /// what another has seen. Only tables over depth are shared: those of the run, or, if the tip's
+    /// radius is unknown, tables of all locations for each radius. Writes
     /// `cross_validation/result.json` and a plot.
     ///
     /// # Errors
-    /// The run is not simulated yet; too few files, places or indenters for what is to be held out.
+    /// The run is not simulated yet; too few files, locations or indenters for what is to be held
+    /// out.
     pub fn cross_validate(&self, plan: &CrossValidationPlan) -> Result<CrossValidation, WorkError> {
         let recording = self.recording()?;
         let simulation = Simulation::read(&self.simulation()?)?;
@@ -199,7 +208,7 @@ impl Run {
             .iter()
             .flat_map(|row| row.folds.iter().map(move |fold| (row, fold)))
             .collect();
-        let work = Work::start(self.progress(), "judging", jobs.len());
+        let work = Work::start(self.progress(), "evaluating", jobs.len());
         let judge_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<Judgement, WorkError> {
             let bench = Bench {
                 recording: &recording,
@@ -235,7 +244,7 @@ impl Run {
         Ok(found)
     }
 
-    /// Tables of all places for each radius that the tip may have, or those that are there.
+    /// Tables of all locations for each radius that the tip can have, or the run's own tables.
     fn tables_of_radii(
         &self,
         settings: &ResolvedSettings,
@@ -301,7 +310,7 @@ fn rows(
 }
 
 impl Row {
-    /// Takes the row's judgements, which come in the order of its divisions.
+    /// Takes the row's results, which come in the order of its folds.
     fn gather(&self, judgements: &mut impl Iterator<Item = Judgement>) -> CrossValidated {
         let mut seeds: Vec<OfSeed> = Vec::new();
         for ((seed, _), judgement) in self.folds.iter().zip(judgements) {
@@ -338,7 +347,7 @@ impl Row {
     }
 }
 
-/// How sure the twins of a row were: means over the judgements of a seed, and their spread.
+/// Intervals and OOD scores of a row: means over the results of a seed, and their spread.
 fn certainty(seeds: &[OfSeed]) -> CertaintySpread {
     let spread = |value: &dyn Fn(&Judgement) -> Option<f64>| {
         let of_seed = |of_seed: &OfSeed| {
@@ -357,7 +366,7 @@ fn certainty(seeds: &[OfSeed]) -> CertaintySpread {
     }
 }
 
-/// The headline over several judgements, each frame counted once; `None` if there is none.
+/// The headline error over several results, with each frame counted once; `None` without frames.
 fn headline(errors: impl Iterator<Item = Errors>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0);
     for errors in errors {
@@ -371,7 +380,7 @@ fn headline(errors: impl Iterator<Item = Errors>) -> Option<f64> {
 }
 
 impl CrossValidation {
-    /// The plot of it: a bar for each row, and for the fitted curve on the same presses.
+    /// The plot: a bar for each row, and for the parametric baseline on the same presses.
     fn plot(&self) -> Bars {
         let bar = |name: String, spread: Spread, ink: Ink| Bar {
             name,
@@ -384,7 +393,7 @@ impl CrossValidation {
         for row in &self.rows {
             bars.extend(row.twin.map(|twin| bar(row.name(), twin, Ink::Twin)));
             if let (Some(kernel), None) = (row.kernel, row.without) {
-                bars.push(bar("fitted curve".to_owned(), kernel, Ink::Muted));
+                bars.push(bar("parametric baseline".to_owned(), kernel, Ink::Muted));
             }
         }
         Bars {
@@ -396,7 +405,7 @@ impl CrossValidation {
 }
 
 impl CrossValidated {
-    /// What the row is, in words.
+    /// The row in words.
     #[must_use]
     pub fn name(&self) -> String {
         match self.without {

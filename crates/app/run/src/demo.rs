@@ -1,4 +1,4 @@
-//! The run that needs neither hardware nor data.
+//! The demo: a run that needs neither hardware nor data.
 
 use std::path::Path;
 
@@ -13,8 +13,8 @@ use crate::built_in::{DEMO_PROTOCOL, REALITY};
 use crate::{Run, RunSettings};
 
 impl Run {
-    /// Starts the demo, and has its recordings made: PhysTac, pressed along the built-in protocol on the emulated bench.
-    /// [`finish`](Self::finish) does the rest. All of it takes minutes.
+    /// Starts the demo and makes its recordings: PhysTac, pressed along the built-in protocol on
+    /// the emulated bench. [`finish`](Self::finish) does the rest. The whole demo takes minutes.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -31,7 +31,7 @@ impl Run {
     }
 }
 
-/// Coarser and shorter than usual: the demo has minutes.
+/// Coarser and shorter than the defaults, so that the demo takes minutes.
 fn settings() -> RunSettings {
     RunSettings {
         simulate: SimulateSettings {

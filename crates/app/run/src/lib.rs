@@ -1,4 +1,12 @@
-//! Runs: from a sensor's description and its recordings to a judged twin and a report, stage by stage.
+//! Runs: the pipeline from a sensor's description and recordings to a trained, evaluated twin and
+//! its report.
+//!
+//! Input: a sensor's description, recordings of presses (CSV files of any laboratory, logs of a
+//! bench, or an emulated bench), [`RunSettings`] and a seed. Output: a folder with a model,
+//! `metrics.json` ([`Metrics`]: errors in % of the largest reading) and `report.html`. [`Run`] is
+//! the main type; [`Run::cross_validate`] repeats training and evaluation for several seeds and
+//! ways to hold presses out, and [`adaptation_curve`] measures how few presses suffice to adapt a
+//! twin to another sensor.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -19,26 +27,54 @@
 //! # }
 //! ```
 //!
-//! A [`Run`] is a folder that a person can open:
+//! # How it works
+//!
+//! A [`Run`] is a folder of stages, and each stage is a folder that a person can open:
 //!
 //! ```text
-//! run.json       what the run is made from, and its settings
-//! sensor.toml    the sensor description, as it was (surfaces beside it)
-//! logs/          of a bench: one for each press (MCAP)
-//! lab/           of the emulated bench: what its gel answers at the places of the presses
+//! run.json       inputs of the run, and its settings
+//! sensor.toml    the sensor's description at the start (surface files beside it)
+//! logs/          of a bench: one log for each press (MCAP)
+//! lab/           of the emulated bench: what its gel answers at the locations of the presses
 //! recordings/    presses.parquet, summary.json
 //! mesh/          the gel's mesh for ParaView and Gmsh, quality.json
-//! simulation/    split.json, bench.json, and a table over depth for each place
+//! simulation/    split.json, bench.json, and a table over depth for each location
 //! pairs/         measured and simulated frames side by side
-//! training/      a twin that never saw the test presses, a twin of all presses, losses
+//! training/      a twin that was trained without the test presses, a twin trained on all presses,
+//!                losses
 //! evaluation/    the errors
-//! cross_validation/  the errors for several seeds and ways to hold presses out, if they were asked for
-//! model/         the twin of all presses, to be used elsewhere
+//! cross_validation/  the errors for several seeds and ways to hold presses out, if asked for
+//! model/         the twin that was trained on all presses, for use elsewhere
 //! report.html, metrics.json
 //! ```
 //!
-//! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`](twintac_work::Progress) hears. What is wrong is a
-//! [`WorkError`](twintac_work::WorkError).
+//! The stages, in order:
+//!
+//! 1. `recordings`: [`Run::import`] reads files of any laboratory, [`Run::emulate`] computes what
+//!    the emulated bench would record, [`Run::press`] carries presses out on a bench and collects
+//!    the logs.
+//! 2. `mesh` ([`Run::mesh`]): the gel at rest, for people to look at.
+//! 3. `simulation` ([`Run::simulate`]): divides the presses into training, validation and test
+//!    presses, fits the unknowns of the bench (setup calibration) to training and validation
+//!    presses, and solves a table over depth for each location.
+//! 4. `pairs` ([`Run::pair`]): puts measured and simulated frames on one clock.
+//! 5. `training` ([`Run::train`]): trains every variant of the twin without the test presses; the
+//!    variant that is best on the validation presses is trained again with the test presses as
+//!    well, and becomes the model.
+//! 6. `evaluation` ([`Run::evaluate`]): scores the twin that was trained without the test presses
+//!    on these, beside the baselines. [`Run::report`] writes the page.
+//!
+//! A stage works in `<name>.partial` and is renamed when it is done. Its `stage.json` lists all its
+//! inputs, and the SHA-256 of its outputs. With the same inputs (and the same build of the program)
+//! a stage is not run again. After a kill, the next run continues with what the partial folder
+//! holds. A stage refuses to read an earlier one that does not match its present inputs, and the
+//! error names the difference. While a run is open, no other process can open it.
+//!
+//! The crate carries copies of the files that are used when none is named ([`built_in`]):
+//! protocols, emulator configurations and a hardware configuration.
+//!
+//! It prints nothing, reads no environment variable and no argument, and ends no process: progress
+//! goes to the caller's `Progress`, and an error is a `WorkError` (both of `crates/app/work`).
 
 mod adaptation_curve;
 mod bench;

@@ -1,4 +1,4 @@
-//! `metrics.json`: the figures of a run, for programs.
+//! The figures of a run for programs: `metrics.json`.
 
 use std::collections::BTreeMap;
 
@@ -12,27 +12,28 @@ use twintac_recording::Provenance;
 pub struct Metrics {
     /// The sensor's name.
     pub sensor: String,
-    /// Where the readings come from.
+    /// Provenance of the readings.
     pub provenance: Provenance,
     /// What the figures mean.
     pub definition: String,
-    /// Taxels left out of the headline.
+    /// Taxels excluded from the headline figure.
     pub taxels_left_out: Vec<String>,
-    /// The variant behind the headline.
+    /// The variant that the validation presses chose.
     pub variant: String,
-    /// Presses that the twin never saw.
+    /// Number of test presses, on which the twin was not trained.
     pub held_out_presses: usize,
-    /// The twin's errors on them.
+    /// The twin's errors on the test presses.
     pub twin: TwinFigures,
-    /// The same with no taxel left out, if some were.
+    /// The errors with all taxels, if some were excluded.
     pub twin_all_taxels: Option<Figures>,
-    /// What to beat.
+    /// Errors of the baselines on the same presses.
     pub baselines: BaselineFigures,
-    /// What two presses of the same place, depth and speed differ by.
+    /// Repeatability: the difference between two presses of the same location, depth and speed.
     pub repeatability: Option<Figures>,
-    /// Every variant that was trained, on the same presses.
+    /// Errors of every trained variant on the same presses.
     pub variants: BTreeMap<String, Figures>,
-    /// How sure the twin is on the same presses, and whether it is right; `None` if too few presses taught to find out.
+    /// Prediction intervals and OOD score of the twin, evaluated on the same presses; `None` if
+    /// there were too few training presses.
     #[serde(default)]
     pub certainty: Option<CertaintyScore>,
     /// Seed of the run.

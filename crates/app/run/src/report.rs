@@ -1,4 +1,4 @@
-//! The report of a run, from what its stages left.
+//! The report of a run, from the results of its stages.
 
 use twintac_report::{Making, StageTime, TrainedVariant, TwinReport};
 use twintac_store::{Finished, StoreError, read_json, write_file};

@@ -1,4 +1,4 @@
-//! A run: a folder in which a sensor's recordings become a judged twin.
+//! A run: a folder in which a sensor's recordings become a trained and evaluated twin.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -15,41 +15,43 @@ use twintac_work::{At, Caller, Progress, WorkError, go_on};
 
 use crate::{Metrics, RunSettings};
 
-/// The sensor's description in a run's folder.
+/// Name of the sensor's description in a run's folder.
 pub(crate) const SENSOR: &str = "sensor.toml";
 
-/// The folder of the logs of a bench.
+/// Name of the folder of a bench's logs.
 pub(crate) const LOGS: &str = "logs";
 
-/// What a run is made from: `run.json`.
+/// The inputs of a run: `run.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RunRecord {
     /// The sensor's name.
     pub sensor: String,
     /// Where the presses come from, in words.
     pub source: String,
-    /// Seed of all that chance decides.
+    /// Seed of all random choices.
     pub seed: u64,
     /// Settings of every stage.
     pub settings: RunSettings,
 }
 
-/// An open run. Its stages are methods, in the order in which they are called: one that brings recordings ([`import`](Self::import),
-/// [`emulate`](Self::emulate) or [`collect`](Self::collect)), then [`mesh`](Self::mesh), [`simulate`](Self::simulate), [`pair`](Self::pair),
+/// An open run. Its stages are methods, in the order in which they are called: one that brings
+/// recordings ([`import`](Self::import), [`emulate`](Self::emulate) or [`collect`](Self::collect)),
+/// then [`mesh`](Self::mesh), [`simulate`](Self::simulate), [`pair`](Self::pair),
 /// [`train`](Self::train), [`evaluate`](Self::evaluate), [`report`](Self::report).
 ///
-/// A stage that is asked for again with the same inputs by the same [`Caller::program`] is not run again. A stage that was killed goes on
-/// with what it had finished. A stage reads earlier ones only if they are as they would be made now: otherwise it is refused, and the error says what
-/// differs.
+/// A stage that is requested again with the same inputs by the same [`Caller::program`] is not run
+/// again. A stage that was killed continues with what it had finished. A stage reads earlier ones
+/// only if they match their present inputs; otherwise it fails, and the error names the difference.
 ///
-/// As long as a run is open, no other process can open it.
+/// While a run is open, no other process can open it.
 #[derive(Clone, Debug)]
 pub struct Run {
     folder: PathBuf,
     record: RunRecord,
-    /// Those of the record, without the path of the fast gel, which the folder has a copy of.
+    /// The settings of the record without the path of the surrogate, because the folder has a copy
+    /// of its file.
     settings: RunSettings,
-    /// The same with the default of what comes after the simulation.
+    /// The same, with default values for the settings that the simulation does not use.
     simulation_settings: RunSettings,
     sensor: Arc<Keyed<SensorFile>>,
     fast: Option<Arc<Keyed<FastTables>>>,
@@ -58,11 +60,14 @@ pub struct Run {
 }
 
 impl Run {
-    /// Starts a run, or takes up the one that the folder holds with new settings: stages that they do not touch are kept. `source` says
-    /// in words where the presses come from. The surfaces of the sensor are copied into the folder, and the fast gel of the settings.
+    /// Starts a run, or continues the one in the folder with new settings: stages that do not
+    /// depend on the changed settings are kept. `source` says in words where the presses come from.
+    /// The surface files of the sensor and the surrogate of the settings are copied into the
+    /// folder.
     ///
     /// # Errors
-    /// A setting that makes no sense; a folder that cannot be written, or in which another process works; a fast gel of another sensor.
+    /// A setting that is not allowed; a folder that cannot be written, or in which another process
+    /// works; a surrogate of another sensor.
     pub fn start(
         folder: &Path,
         sensor: impl Into<SensorFile>,
@@ -106,10 +111,11 @@ impl Run {
         })
     }
 
-    /// Opens a run that was started.
+    /// Opens an existing run.
     ///
     /// # Errors
-    /// [`WorkError::NotARun`]; a folder in which another process works; a sensor description or a fast gel that cannot be read.
+    /// [`WorkError::NotARun`]; a folder in which another process works; a sensor's description or a
+    /// surrogate that cannot be read.
     pub fn open(folder: &Path, caller: Caller) -> Result<Self, WorkError> {
         let record: RunRecord = read_json(&folder.join("run.json")).map_err(|source| WorkError::NotARun {
             folder: folder.to_owned(),
@@ -137,14 +143,14 @@ impl Run {
         })
     }
 
-    /// The same run, whose work another follows.
+    /// The same run with another receiver of progress.
     #[must_use]
     pub fn followed_by(mut self, progress: Arc<dyn Progress>) -> Self {
         self.caller.progress = progress;
         self
     }
 
-    /// Runs all stages after the recordings, and says how well the twin did.
+    /// Runs all stages after the recordings, and returns the errors of the twin.
     ///
     /// # Errors
     /// Those of the stages.
@@ -164,13 +170,13 @@ impl Run {
         &self.folder
     }
 
-    /// What the run is made from.
+    /// The inputs of the run.
     #[must_use]
     pub fn record(&self) -> &RunRecord {
         &self.record
     }
 
-    /// The sensor whose twin is made.
+    /// The run's sensor.
     #[must_use]
     pub fn sensor(&self) -> &SensorFile {
         &self.sensor
@@ -191,7 +197,7 @@ impl Run {
         &self.sensor
     }
 
-    /// The folder of the twin of all presses: what [`digitac::Model::load`] reads.
+    /// The folder of the twin that was trained on all presses. [`digitac::Model::load`] reads it.
     #[must_use]
     pub fn model_folder(&self) -> PathBuf {
         self.folder.join("model")
@@ -203,18 +209,18 @@ impl Run {
         self.folder.join("report.html")
     }
 
-    /// The folder of the logs of a bench.
+    /// The folder of a bench's logs.
     #[must_use]
     pub fn logs_folder(&self) -> PathBuf {
         self.folder.join(LOGS)
     }
 
-    /// The gel as the twin simulates it.
+    /// The simulated gel of the run.
     pub(crate) fn gel(&self) -> Gel {
         gel_of(&self.sensor, &self.record.settings)
     }
 
-    /// The fast gel whose tables the run uses, if it does.
+    /// The surrogate that makes the run's tables, if the settings name one.
     pub(crate) fn fast(&self) -> Option<&Keyed<FastTables>> {
         self.fast.as_deref()
     }
@@ -227,7 +233,8 @@ impl Run {
         &*self.caller.progress
     }
 
-    /// Taxels whose readings are not to be trusted, by index: left out of headline figures.
+    /// Indices of the excluded taxels (`doubtful` in the description): they do not count in
+    /// headline figures.
     pub(crate) fn left_out(&self) -> BTreeSet<usize> {
         left_out(&self.sensor.sensor)
     }
@@ -239,7 +246,7 @@ impl Run {
         }
     }
 
-    /// Runs a stage unless it is there, and says so.
+    /// Runs a stage unless it is complete, and reports the outcome.
     pub(crate) fn run_stage<S>(&self, stage: &S) -> Result<Finished, WorkError>
     where
         S: Stage<Follower = dyn Progress, Error = WorkError>,
@@ -253,7 +260,8 @@ impl Run {
     }
 }
 
-/// The text of a description tells it from every other once its surfaces are called after their contents.
+/// A sensor file with a key. Its text identifies it, because the text names surfaces by their
+/// contents.
 pub(crate) fn keyed(sensor: SensorFile) -> Keyed<SensorFile> {
     let text = sensor.text.clone();
     Keyed::of_bytes(sensor, text.as_bytes())
@@ -275,7 +283,7 @@ fn of_simulation(settings: &RunSettings) -> RunSettings {
     }
 }
 
-/// A sensor's gel as settings have it simulated.
+/// A sensor's gel with the settings of its simulation.
 pub(crate) fn gel_of(sensor: &SensorFile, settings: &RunSettings) -> Gel {
     Gel::new(Arc::clone(&sensor.sensor), settings.simulate.clone())
 }

@@ -1,4 +1,5 @@
-//! Settings of every stage of a run: what people write, and what becomes of it for one sensor and its presses.
+//! Settings of all stages of a run: as people write them, and resolved for one sensor and its
+//! presses.
 
 use std::path::{Path, PathBuf};
 
@@ -13,41 +14,44 @@ use twintac_simulate::SimulateSettings;
 use twintac_temperature::Compensation;
 use twintac_work::WorkError;
 
-/// What is no setting though it sounds like one, and what decides it.
+/// Fields that are not settings, although a reader may expect them to be, and what determines them.
 const DECIDED: [(&str, &str); 4] = [
-    ("split.seed", "the run's seed decides it: `--seed`"),
-    ("train.seed", "the run's seed decides it: `--seed`"),
+    ("split.seed", "it is determined by the run's seed, `--seed`"),
+    ("train.seed", "it is determined by the run's seed, `--seed`"),
     (
         "bench.left_out",
-        "the sensor's description decides it: which taxels are `doubtful`",
+        "it is determined by the sensor's description: the taxels that are `doubtful`",
     ),
     (
         "bench.ports_mm",
-        "the sensor's description decides it: `position_mm` of its taxels; `smooth_factor = false` does without",
+        "it is determined by the sensor's description: `position_mm` of its taxels; `smooth_factor = false` needs no positions",
     ),
 ];
 
-/// Settings of every stage of a run; each has a default. A TOML file with those that differ has a table for each field.
+/// Settings of all stages of a run; each has a default. A TOML file with other values has a table
+/// for each field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RunSettings {
-    /// How finely the gel is simulated.
+    /// Simulation of the gel.
     pub simulate: SimulateSettings,
-    /// A fast gel's file, made by `twintac fast train`: tables are then its answers, and nothing is solved.
+    /// File of a surrogate of the gel, made by `twintac fast train`: it then makes the tables, and
+    /// nothing is solved by finite elements.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fast_gel: Option<PathBuf>,
-    /// How zeros move with temperature, as `twintac characterize` found it in a log: recordings with temperatures are compensated, and the model keeps it.
+    /// Temperature coefficients of the zeros, as `twintac characterize` finds them in a log.
+    /// Recordings with temperatures are compensated, and the model keeps the coefficients.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub temperature: Option<Compensation>,
-    /// How deep places are simulated.
+    /// Depths to which locations are simulated.
     pub places: PlaceSettings,
-    /// What is fitted about the bench.
+    /// Setup calibration: which unknowns of the bench are fitted.
     pub bench: BenchSettings,
-    /// Which presses are held out.
+    /// Division into training, validation and test presses.
     pub split: SplitSettings,
-    /// How clocks are aligned.
+    /// Alignment of clocks.
     pub pair: PairSettings,
-    /// How twins are trained.
+    /// Training of the twins.
     pub train: TrainSettings,
 }
 
@@ -76,15 +80,16 @@ impl Checked for RunSettings {
 }
 
 impl RunSettings {
-    /// The default settings but for those in the file, if there is one.
+    /// The default settings, with the values of the file in place of its own, if there is a file.
     ///
     /// # Errors
-    /// A file that cannot be read, a field that there is not, a value that makes no sense.
+    /// A file that cannot be read, an unknown field, a value that is not allowed.
     pub fn read(path: Option<&Path>) -> Result<Self, WorkError> {
         Self::default().but(path)
     }
 
-    /// For presses that are looked at one by one: the gel is simulated more finely than for the many tables of a run.
+    /// Settings for a few single presses: the gel is simulated more finely than for the many tables
+    /// of a run.
     #[must_use]
     pub fn fine() -> Self {
         Self {
@@ -93,7 +98,7 @@ impl RunSettings {
         }
     }
 
-    /// These settings but for those in the file, if there is one.
+    /// These settings, with the values of the file in place of their own, if there is a file.
     ///
     /// # Errors
     /// Those of [`read`](Self::read).
@@ -105,16 +110,17 @@ impl RunSettings {
         Ok(document.checked()?)
     }
 
-    /// These settings but for those of a TOML text, which `file` names in errors.
+    /// These settings, with the values of a TOML text in place of their own. Error messages name
+    /// `file`.
     ///
     /// # Errors
-    /// A field that there is not, a value that makes no sense.
+    /// An unknown field, a value that is not allowed.
     pub fn but_parsed(self, file: &str, text: &str) -> Result<Self, WorkError> {
         let document = twintac_config::parse_over(file, text, &self).map_err(decided)?;
         Ok(document.checked()?)
     }
 
-    /// The settings with all that depends on the sensor, its presses and the seed filled in.
+    /// The settings, completed with all that depends on the sensor, its presses and the seed.
     pub(crate) fn resolve(
         &self,
         sensor: &Sensor,
@@ -124,9 +130,9 @@ impl RunSettings {
     ) -> Result<ResolvedSettings, Problem> {
         self.checked()?;
         let Self {
-            simulate: _,    // as it is
-            fast_gel: _,    // it has its own input
-            temperature: _, // recordings are read with it
+            simulate: _,    // unchanged
+            fast_gel: _,    // an input of its own
+            temperature: _, // applied when recordings are read
             places,
             mut bench,
             split,
@@ -138,7 +144,7 @@ impl RunSettings {
             (Some(radii_mm), false) if !radii_mm.is_empty() => {
                 return Err(Problem::new(
                     "bench.tip_radii_mm",
-                    "is of no use: it is fitted to presses with one ball whose radius the sensor's description only infers",
+                    "has no effect: it is fitted only to presses with one ball whose radius is inferred in the sensor's description",
                     "leave it out, or say in the description that the radius is `inferred`",
                 ));
             }
@@ -159,7 +165,7 @@ impl RunSettings {
     }
 }
 
-/// What stages compute from: settings for one sensor, its presses and a seed.
+/// The settings from which stages compute: resolved for one sensor, its presses and a seed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ResolvedSettings {
     pub(crate) places: PlaceSettings,
@@ -167,18 +173,18 @@ pub(crate) struct ResolvedSettings {
     pub(crate) split: SplitSettings,
     pub(crate) pair: PairSettings,
     pub(crate) train: TrainSettings,
-    /// Of all that chance decides.
+    /// Seed of all random choices.
     pub(crate) seed: u64,
-    /// What the sensor's description says of its taxels.
+    /// The taxels by the sensor's description.
     pub(crate) taxels: Taxels,
 }
 
-/// What can be trained on a fast gel, which has no stress features.
+/// The variants that can be trained with a surrogate, which has no stress features.
 fn without_paper(variants: Option<Vec<Variant>>) -> Result<Vec<Variant>, Problem> {
     match variants {
         Some(variants) if variants.contains(&Variant::Paper) => Err(Problem::new(
             "train.variants",
-            "names the paper's network, which reads stresses, and a fast gel does not know them",
+            "names the paper's network, which reads stresses, but a surrogate does not compute them",
             "leave `paper` or `fast_gel` out",
         )),
         Some(variants) => Ok(variants),
@@ -189,7 +195,7 @@ fn without_paper(variants: Option<Vec<Variant>>) -> Result<Vec<Variant>, Problem
     }
 }
 
-/// Says what decides what somebody took for a setting.
+/// Adds to the error of an unknown field what determines its value instead.
 fn decided(error: ConfigError) -> ConfigError {
     match DECIDED.iter().find(|(field, _)| *field == error.field) {
         Some((_, hint)) => ConfigError {
@@ -201,7 +207,8 @@ fn decided(error: ConfigError) -> ConfigError {
     }
 }
 
-/// Whether all presses were made with one ball whose radius the sensor's description only infers.
+/// Whether all presses were made with one ball whose radius the sensor's description marks as
+/// inferred.
 fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
     let Some(first) = recording.presses.first() else {
         return false;
@@ -222,7 +229,7 @@ fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
 mod tests {
     use super::*;
 
-    /// Every number of every table, also of those fields that are left out by default.
+    /// Values for fields that have none by default, so that every number of every table is tested.
     const ALL: &str = "
 [simulate]
 contact_edge_mm = 0.5
@@ -233,7 +240,7 @@ block_mm = 0.1
 teaching_places = 8
 ";
 
-    /// Zero means something here: it switches off what the field is about.
+    /// Fields for which zero is allowed: it switches their feature off.
     const ZERO_IS_NONE: [&str; 16] = [
         "bench.contact_offset_limit_mm",
         "bench.n_blocks",

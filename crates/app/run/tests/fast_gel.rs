@@ -1,4 +1,5 @@
-//! A fast gel is trained in a folder, taken up again, and makes a run's tables.
+//! A surrogate is trained in a folder, the training is repeated, and the surrogate makes a run's
+//! tables.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -11,7 +12,7 @@ use twintac_sensor::SensorFile;
 use twintac_tables::FAST_GEL;
 use twintac_work::Caller;
 
-/// PhysTac, pressed so little that a lesson is solved at once.
+/// PhysTac with so small a depth limit that a training press is solved at once.
 fn shallow() -> SensorFile {
     let text = SensorFile::phystac().unwrap().text;
     let text = text.replace("depth_mm = 5.0", "depth_mm = 0.5");
@@ -36,7 +37,7 @@ fn lessons_are_kept_and_tables_follow_from_them() {
     };
     let train = |seed: u64| train_fast(&sensor, folder, &settings, seed, &Caller::default());
     let found = train(1).unwrap();
-    // One of five is held out where there are few.
+    // Of few training presses, one in five is held out.
     assert_eq!(found.n_taught, 16);
     assert!(
         found.held_out.overall.unwrap().nearest_percent < 50.0,
@@ -45,7 +46,7 @@ fn lessons_are_kept_and_tables_follow_from_them() {
     let bytes = std::fs::read(folder.join(FAST_GEL)).unwrap();
     assert!(folder.join("judgement.png").exists());
 
-    // A lesson that is there is not solved again, and a damaged one is.
+    // A training press that exists is not solved again; a damaged one is.
     let presses = || {
         std::fs::read_dir(folder.join("presses"))
             .unwrap()
@@ -66,7 +67,7 @@ fn lessons_are_kept_and_tables_follow_from_them() {
     assert_eq!(presses().count(), 2 * before.len());
     assert_eq!(train(1).unwrap(), found);
 
-    // A run takes the fast gel of its own sensor, and no other.
+    // A run accepts the surrogate of its own sensor, and no other.
     let run = folder.join("run");
     let start = |sensor: SensorFile| {
         let settings = RunSettings {

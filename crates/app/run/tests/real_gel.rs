@@ -1,4 +1,5 @@
-//! The headline on a real gel, guarded: a twin of the urethane strip, made and judged as `reproduce` does, without perceptrons.
+//! Regression test of the headline figure on a real gel: a twin of the urethane strip, trained and
+//! evaluated as `reproduce` does, without perceptrons.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // also in the helpers of tests
 
@@ -10,10 +11,12 @@ use twintac_run::{Run, RunSettings, read_recordings};
 use twintac_sensor::SensorFile;
 use twintac_work::{Caller, Silent};
 
-/// Largest error of the nearest taxel in contact, % of each file's largest reading. A curve without physics has 1.0, predicting nothing 48.
+/// Largest accepted error of the nearest taxel in contact, % of each file's largest reading. The
+/// parametric baseline has 1.0, and predicting zero 48.
 const LARGEST_PERCENT: f64 = 1.2;
 
-/// Largest medians of how far off places, mm, and depths, % of each press's deepest, are that the twin finds from readings.
+/// Largest accepted medians of the errors of contact estimation from readings: location, mm, and
+/// depth, % of each press's deepest.
 const LARGEST_PLACE_MM: f64 = 0.4;
 const LARGEST_DEPTH_PERCENT: f64 = 4.0;
 
@@ -61,7 +64,7 @@ fn a_twin_of_a_real_gel_stays_under_its_error() {
     finds_places_and_depths(folder.path());
 }
 
-/// Presses that the twin never saw are found from their readings, frame by frame, and it is known how well.
+/// Test presses are located from their readings, frame by frame, and the errors are known.
 fn finds_places_and_depths(run: &Path) {
     let settings = Locator::settings(None).unwrap();
     let locator = Locator::open(&run.join("training/held-out"), &[], settings, &Silent).unwrap();
@@ -79,7 +82,7 @@ fn finds_places_and_depths(run: &Path) {
         errors.depth_within_two_deviations_percent,
     ];
     assert!(within.iter().all(|percent| percent.unwrap() > 80.0), "{errors:?}");
-    // Away from the gel, nothing is found.
+    // Away from the gel, no contact is found.
     let frames = found.presses.iter().flat_map(|press| &press.frames);
     let above: Vec<_> = frames
         .filter(|frame| frame.true_depth_mm.is_some_and(|depth_mm| depth_mm < -1.0))

@@ -1,4 +1,4 @@
-//! The emulated bench, on the same wires.
+//! The emulated bench, on the same protocols as a real one.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -22,17 +22,17 @@ use twintac_work::{At, WorkError};
 use crate::OpenBench;
 use crate::open::{Addresses, Tactile, connect};
 
-/// What a file of faults holds.
+/// The content of a file of faults.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FaultsFile {
     faults: Vec<ScheduledFault>,
 }
 
-/// Reads what is to go wrong on the emulated bench, from a TOML file with tables `[[faults]]`.
+/// Reads the faults of the emulated bench from a TOML file with tables `[[faults]]`.
 ///
 /// # Errors
-/// A file that cannot be read or is wrong; a fault that makes no sense.
+/// A file that cannot be read or is wrong; an impossible fault.
 pub fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>, WorkError> {
     let faults = twintac_config::read::<FaultsFile>(file)?.value.faults;
     check_faults(&faults).at(|| file.display().to_string())?;
@@ -40,10 +40,11 @@ pub fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>, WorkError> {
 }
 
 impl OpenBench {
-    /// Switches emulated devices on, with faults. `tables` are what the gel answers where it will be pressed.
+    /// Starts emulated devices, with faults. `tables` are the responses of the gel at the locations
+    /// that will be pressed.
     ///
     /// # Errors
-    /// A sensor that is not read this way.
+    /// A sensor that is not read over a bus.
     pub fn emulate(
         sensor: &Arc<Sensor>,
         reality: &Reality,
@@ -62,7 +63,7 @@ impl OpenBench {
             ..EmulatedBenchSettings::default()
         };
         let noise_pa = 1e3 * reality.readout.noise_kpa;
-        devices.board.barometer.noise_pa = noise_pa; // at 1024 samples
+        devices.board.barometer.noise_pa = noise_pa; // the value for 1024 samples
         devices.board.noise_pa = Some(noise_pa);
         devices.board.seed = reality.seed;
         devices.force.noise_n = reality.robot.force_noise_n;
@@ -83,7 +84,7 @@ impl OpenBench {
         let taxels = PhysTac::new(devices.board.bus(), lab_clock, move || clock.now_us(), driver);
         let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
         let free = move |_: &mut _, delay: &mut LabClock| {
-            // A bus that stays hung fails the next frame as well.
+            // If this does not free the bus, the next frame fails as well.
             let _ = reset_switch(&mut reset, delay);
             let _ = free_bus(&mut scl, &mut sda, delay);
         };

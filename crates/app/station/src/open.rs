@@ -1,4 +1,4 @@
-//! A protocol carried out on a bench, real or emulated, over its wires.
+//! A bench with connected devices.
 
 use std::fmt;
 use std::net::{SocketAddr, TcpStream};
@@ -19,30 +19,31 @@ use twintac_work::WorkError;
 /// How long a device may take to accept a connection.
 pub(crate) const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 
-/// A bench that is switched on: its robot is enabled, and stands. Dropped, it stops.
+/// A bench that is switched on: its robot is enabled, and does not move. When it is dropped, it
+/// stops.
 pub struct OpenBench {
     pub(crate) devices: Bench<Client<TcpStream>>,
     pub(crate) transfer: Option<Transfer>,
     pub(crate) provenance: Provenance,
     pub(crate) notes: Vec<String>,
-    /// Where the robot listens.
+    /// The address of the robot's commands.
     pub(crate) robot: SocketAddr,
-    /// The emulated bench's imperfections.
+    /// The emulator configuration, for an emulated bench.
     pub(crate) reality: Option<Reality>,
-    /// Puts indenters on, where nobody has to.
+    /// Changes the indenter of an emulated bench, where no person has to.
     pub(crate) selector: Option<Selector>,
-    /// What keeps emulated devices running.
+    /// Keeps emulated devices running.
     pub(crate) _emulated: Option<twintac_emulate::EmulatedBench>,
 }
 
 impl OpenBench {
-    /// Where its readings come from.
+    /// Provenance of its readings.
     #[must_use]
     pub fn provenance(&self) -> Provenance {
         self.provenance
     }
 
-    /// What was odd when it was switched on, a sentence each.
+    /// Remarks from when it was switched on, one sentence each.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -58,15 +59,15 @@ impl fmt::Debug for OpenBench {
     }
 }
 
-/// Where robot and force sensor listen.
+/// Network addresses of robot and force sensor.
 pub(crate) struct Addresses {
     pub(crate) commands: SocketAddr,
     pub(crate) reports: SocketAddr,
-    /// Of the force sensor's requests; what its page says.
+    /// The address of the force sensor's requests, and the configuration that its page shows.
     pub(crate) force: (SocketAddr, netft::Configuration),
 }
 
-/// Devices that are connected, how counts become pressure, and what was odd.
+/// Connected devices, the conversion from counts to pressure, and remarks.
 pub(crate) struct Connected {
     pub(crate) bench: Bench<Client<TcpStream>>,
     pub(crate) transfer: Option<Transfer>,
@@ -80,7 +81,7 @@ pub(crate) fn connect_to(reports: SocketAddr) -> Result<TcpStream, WorkError> {
     })
 }
 
-/// The tactile sensor, checked.
+/// The tactile sensor, after its check.
 pub(crate) struct Tactile {
     pub(crate) source: Box<dyn TactileSource>,
     pub(crate) transfer: Option<Transfer>,
@@ -88,7 +89,7 @@ pub(crate) struct Tactile {
 }
 
 impl Tactile {
-    /// On a bus, checked in free air. `free` frees a bus that hangs.
+    /// A sensor on a bus, checked in free air. `free` frees a bus that hangs.
     pub(crate) fn on_bus<I, D, C>(
         mut taxels: PhysTac<I, D, C, TAXELS>,
         free: impl FnMut(&mut I, &mut D) + Send + 'static,
@@ -112,7 +113,7 @@ impl Tactile {
     }
 }
 
-/// Connects, and has everything heard. The robot is enabled last.
+/// Connects all devices and starts their streams. The robot is enabled last.
 pub(crate) fn connect(
     addresses: &Addresses,
     tactile: Tactile,
@@ -129,7 +130,7 @@ pub(crate) fn connect(
     streams.hear_robot(ReportReader::new(reports, ReportPort::Development))?;
     let mut arm = Client::connect(addresses.commands)?;
     if let Some(code) = arm.errors()? {
-        notes.push(format!("the robot's controller had {code}; it is cleaned now"));
+        notes.push(format!("the robot's controller had {code}; it is cleared now"));
     }
     arm.enable()?;
     arm.begin_servo()?;

@@ -1,4 +1,4 @@
-//! Presses, carried out and logged.
+//! Carries presses out and logs them.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -18,19 +18,19 @@ use twintac_work::{Progress, Work, WorkError};
 
 use crate::OpenBench;
 
-/// What presses of one folder have in common, besides how they are planned.
+/// What the logs of one folder have in common, besides the plans.
 #[derive(Serialize)]
 struct LogsOf<'a> {
     sensor: &'a Keyed<SensorFile>,
-    /// Of the emulated bench; nothing of a real one.
+    /// The emulator configuration; `None` for a real bench.
     reality: Option<&'a Reality>,
     placement: &'a Placement,
 }
 
-/// Logs in a folder, if there are any, are of this sensor, bench and placement.
+/// Checks that the logs in a folder, if there are any, belong to this sensor, bench and placement.
 ///
 /// # Errors
-/// They are of others: what differs.
+/// The logs belong to something else; the error names the difference.
 pub fn check_logs(
     logs: &Path,
     sensor: &Keyed<SensorFile>,
@@ -52,22 +52,24 @@ fn made_from(
     })?)
 }
 
-/// Who is at the bench while it presses.
+/// The caller's side of a bench while it presses.
 pub struct Attended<'a> {
     /// Setting it stops the bench.
     pub interrupt: &'a AtomicBool,
-    /// Has a person mount an indenter, as [`Operator::mount`] says; the emulated bench asks nobody.
+    /// Asks a person to mount an indenter, as [`Operator::mount`] does. The emulated bench does not
+    /// call it.
     pub mount: &'a mut dyn FnMut(&str) -> Mounting,
-    /// Hears how the work goes.
+    /// Receives the progress of the work.
     pub progress: &'a dyn Progress,
 }
 
 impl OpenBench {
-    /// Carries presses out, those whose logs are not in the folder yet.
+    /// Carries out the presses whose logs are not in the folder yet.
     ///
     /// # Errors
-    /// A sensor without limits; settings or plans that cannot be carried out; a folder that holds other presses; a disk that fails. A bench
-    /// that was stopped is no error: the summary says why.
+    /// A sensor without limits; settings or plans that cannot be carried out; a folder that holds
+    /// other presses; a disk that fails. A bench that was stopped is no error: the summary says
+    /// why.
     pub fn press(
         &mut self,
         sensor: &Keyed<SensorFile>,
@@ -101,7 +103,7 @@ impl OpenBench {
         Ok(summary)
     }
 
-    /// What the logs are about.
+    /// The description in every log.
     fn description(&self, file: &SensorFile) -> Description {
         let sensor = &file.sensor;
         let version = env!("CARGO_PKG_VERSION").to_owned();
@@ -111,7 +113,7 @@ impl OpenBench {
             provenance: self.provenance,
             taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
             transfer: self.transfer.as_ref().map(twintac_source::confirmed_transfer),
-            // Set by the runner.
+            // The runner sets these.
             base_from_gel: Pose::IDENTITY,
             tool_from_indenter: Pose::IDENTITY,
             force_axis: glam::DVec3::NEG_Z,
@@ -121,20 +123,20 @@ impl OpenBench {
     }
 }
 
-/// Stops a robot that did not confirm its stop over a connection of its own; how that went.
+/// Stops a robot that did not confirm its stop, over a new connection; returns the result in words.
 fn stop_anew(robot: SocketAddr) -> String {
     match Client::connect(robot).and_then(|mut robot| robot.stop()) {
         Ok(()) => "the robot was stopped over a second connection".to_owned(),
         Err(error) => format!(
-            "the robot may still be pressing and cannot be told to stop ({error}): press its emergency stop"
+            "the robot may still be pressing and cannot be stopped ({error}): press its emergency stop"
         ),
     }
 }
 
-/// Has indenters mounted: by a person, or in the lab by itself.
+/// Handles the mounting of indenters: a person mounts them, or the emulator changes them itself.
 struct Attendant<'a> {
     work: Work<'a>,
-    /// Presses that have begun or were done before.
+    /// Number of presses that have begun or were done before.
     n_begun: usize,
     selector: Option<&'a Selector>,
     mount: &'a mut dyn FnMut(&str) -> Mounting,
@@ -152,7 +154,7 @@ impl Operator for Attendant<'_> {
         (self.n_begun..index).for_each(|_| self.work.step(""));
         self.n_begun = index;
         if let Some(selector) = self.selector {
-            // The tables are those of the same plans.
+            // The tables were made from the same plans.
             let _ = selector.select(&plan.name);
         }
     }

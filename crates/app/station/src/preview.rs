@@ -1,4 +1,4 @@
-//! What a run would do: its places, its motion and its time.
+//! A preview of presses on a bench: locations, motion and duration.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -16,13 +16,13 @@ use twintac_work::WorkError;
 /// What a protocol would do on a bench, and how long it would take.
 #[derive(Clone, Debug, Serialize)]
 pub struct Preview {
-    /// How many presses.
+    /// Number of presses.
     pub presses: usize,
-    /// With how many different indenters.
+    /// Number of different indenters.
     pub indenters: usize,
-    /// How long, s, without the time to change indenters.
+    /// Duration, s, without the time to change indenters.
     pub duration_s: f64,
-    /// Pictures of places and motion (SVG).
+    /// Drawings of locations and motion (SVG).
     pub drawings: Vec<PathBuf>,
 }
 
@@ -34,7 +34,7 @@ impl Preview {
     }
 }
 
-/// Says and draws what presses would do on a bench, without one. The pictures go into `folder`.
+/// Computes and draws what presses would do on a bench, without one. The drawings go into `folder`.
 ///
 /// # Errors
 /// A press that cannot be carried out; a file that cannot be written.
@@ -69,7 +69,7 @@ fn minutes(seconds: f64) -> String {
 
 fn places(plans: &[PressPlan], sensor: &Sensor) -> Places {
     Places {
-        title: format!("{} presses, how deep", plans.len()),
+        title: format!("Depths of {} presses", plans.len()),
         unit: "mm".to_owned(),
         places_mm: plans.iter().map(|plan| [plan.x_mm, plan.y_mm]).collect(),
         values: plans.iter().map(|plan| plan.depth_mm).collect(),
@@ -81,10 +81,10 @@ fn places(plans: &[PressPlan], sensor: &Sensor) -> Places {
     }
 }
 
-/// Presses whose motion is drawn: more would be a smear.
+/// Number of presses whose motion is drawn; more would be illegible.
 const DRAWN: usize = 5;
 
-/// The indenter over time, in the gel's frame.
+/// The indenter's position over time, in the gel's frame.
 fn motion(dry: &DryRun, settings: &PressSettings) -> Panels {
     let poses: Vec<(f64, DVec3)> = dry
         .presses
@@ -106,7 +106,7 @@ fn motion(dry: &DryRun, settings: &PressSettings) -> Panels {
     };
     Panels {
         title: format!(
-            "The indenter's tip in the first {} of {} presses, {} in all",
+            "Position of the indenter's tip in the first {} of {} presses, which take {} in all",
             dry.presses.len().min(DRAWN),
             dry.presses.len(),
             minutes(dry.duration_s)

@@ -1,4 +1,4 @@
-//! A bench that moves something real.
+//! A bench of real devices.
 
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::Path;
@@ -18,10 +18,12 @@ use crate::open::{Addresses, CONNECT_WITHIN, Tactile, connect, connect_to};
 use phystac::PhysTac;
 
 impl OpenBench {
-    /// Connects the devices that the settings name. The robot is enabled, and stands. `known` is what is known about the barometers.
+    /// Connects the devices that the settings name. The robot is enabled, and does not move.
+    /// `known` is what is known about the barometers.
     ///
     /// # Errors
-    /// Settings without devices; a device that does not answer or is not set up as described; taxels that do not read free air.
+    /// Settings without devices; a device that does not answer or is not configured as described;
+    /// taxels that do not read the pressure of free air.
     pub fn connect(sensor: &Sensor, settings: &PressSettings, known: &Known) -> Result<Self, WorkError> {
         let devices = settings.real_devices()?;
         let clock = BenchClock::start();
@@ -44,7 +46,8 @@ impl OpenBench {
                 let mut driver = twintac_source::driver_settings(sensor)?;
                 driver.conversion_us = settings.conversion_us;
                 let taxels = open_bus(Path::new(&devices.tactile), driver, clock)?;
-                // Where the kernel's driver of the bus can free it, it does; the switch's reset line is not wired to this computer.
+                // The kernel's bus driver frees the bus where it can. The switch's reset line is
+                // not connected to this computer.
                 Tactile::on_bus(taxels, |_, _| {}, sensor, known)?
             }
         };
@@ -77,7 +80,7 @@ fn on_line(tactile: &str, line: &Path, sensor: &Sensor, clock: BenchClock) -> Re
     })
 }
 
-/// Where something listens.
+/// The network address of a host and a port.
 fn address(host: &str, port: u16) -> Result<SocketAddr, WorkError> {
     let mut found = (host, port)
         .to_socket_addrs()

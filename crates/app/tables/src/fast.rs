@@ -1,4 +1,4 @@
-//! Tables over depth that a fast gel makes, where nothing is solved.
+//! Tables over depth from a surrogate, where nothing is solved.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,31 +12,32 @@ use twintac_simulate::{Gel, PressPlace};
 use twintac_store::Keyed;
 use twintac_work::WorkError;
 
-/// File of a fast gel in its folder.
+/// Name of a surrogate's file in its folder.
 pub const FAST_GEL: &str = "fast.safetensors";
 
-/// By how much an indenter is moved aside for the slopes of the pressure, mm.
+/// Step of the finite differences for the slopes of the pressure: how far the indenter is moved
+/// aside, mm.
 const ASIDE_MM: f64 = 0.5;
 
-/// A fast gel of one sensor.
+/// A surrogate of one sensor's gel, as a source of tables.
 #[derive(Debug)]
 pub struct FastTables {
     fast: FastGel,
-    /// Shapes that were asked for: sampling one takes longer than a press with it.
+    /// Shapes that were used before: to sample a shape takes longer than a press with it.
     bodies: Mutex<Vec<(Shape, Arc<Body>)>>,
 }
 
-/// A fast gel that reads one body.
+/// A surrogate, evaluated for one body.
 struct Reading {
     reader: FastReader,
     body: Arc<Body>,
 }
 
 impl FastTables {
-    /// The fast gel of a file, and the file's bytes.
+    /// Reads a surrogate's file. Returns the surrogate and the file's bytes.
     ///
     /// # Errors
-    /// A file that cannot be read or is something else, and the fast gel of another gel.
+    /// A file that cannot be read or is something else; a surrogate of another gel.
     pub fn read(path: &Path, sensor: &Sensor) -> Result<(Keyed<Self>, Vec<u8>), WorkError> {
         let bytes = std::fs::read(path).map_err(WorkError::file("reading", path))?;
         let fast = FastGel::from_bytes(&bytes)
@@ -45,10 +46,10 @@ impl FastTables {
         Ok((Keyed::of_bytes(tables, &bytes), bytes))
     }
 
-    /// A fast gel, which is called so in errors.
+    /// The tables of a surrogate. Error messages call it `name`.
     ///
     /// # Errors
-    /// The fast gel of another gel.
+    /// A surrogate of another gel.
     pub fn of(fast: FastGel, sensor: &Sensor, name: &str) -> Result<Self, WorkError> {
         fast.check(sensor)
             .map_err(|mismatch| WorkError::Input(format!("{name}: {mismatch}")))?;
@@ -58,15 +59,15 @@ impl FastTables {
         })
     }
 
-    /// The fast gel.
+    /// The surrogate.
     pub fn gel(&self) -> &FastGel {
         &self.fast
     }
 
-    /// A shape as the fast gel feels it.
+    /// A shape, sampled for the surrogate.
     ///
     /// # Errors
-    /// A shape that can't be.
+    /// An impossible shape.
     pub fn body(&self, shape: &Shape, sensor: &Sensor) -> Result<Arc<Body>, ShapeError> {
         let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, body)) = bodies.iter().find(|(known, _)| known == shape) {
@@ -77,7 +78,7 @@ impl FastTables {
         Ok(body)
     }
 
-    /// The table at a place. Its stress features are zero: a fast gel does not know them.
+    /// The table at a location. Its stress features are zero: the surrogate does not compute them.
     pub fn table(&self, gel: &Gel, place: &PressPlace) -> Result<DepthTable, SourceError> {
         let above = Pose {
             position_mm: DVec3::new(place.x_mm, place.y_mm, 0.0),
@@ -124,7 +125,8 @@ impl FastTables {
             )
         };
         let (here_kpa, wrench) = read(DVec3::ZERO);
-        // A port that is farther along x feels what it would feel here of an indenter that is less far.
+        // A port that is farther along x feels here what the present port would feel of an indenter
+        // that is less far along x.
         let around =
             [DVec3::X, DVec3::Y].map(|way| [-ASIDE_MM, ASIDE_MM].map(|aside_mm| read(aside_mm * way).0));
         let slopes = sensor.taxels.iter().enumerate().map(|(taxel, described)| {

@@ -1,4 +1,4 @@
-//! Simulated presses, each computed once and kept as a file.
+//! Simulated presses. Each is computed once and kept as a file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -14,20 +14,22 @@ use twintac_work::{Progress, WorkError, go_on};
 
 use crate::fast::FastTables;
 
-/// Spacing of a lattice over the gel's height, for places along a line and over a plane, which has so many more of them.
+/// Spacing of a lattice in gel heights, for locations along a line and over a plane. A plane needs
+/// many more locations.
 const LATTICE_SPACINGS: [f64; 2] = [1.0 / 4.0, 1.0 / 3.0];
 
 /// Tables over depth of one gel.
 pub struct DepthTableStore<'a> {
     gel: Keyed<Gel>,
     progress: &'a dyn Progress,
-    /// Where tables are kept.
+    /// The cache on disk.
     store: Option<Store>,
-    /// What makes tables instead of the gel.
+    /// The surrogate that makes the tables instead of the gel, if there is one.
     fast: Option<&'a FastTables>,
 }
 
-/// A table is made from a gel, with all that it consists of, and a place, with the shape that presses.
+/// What a table is made from: the gel, with its description and settings, and the location, with
+/// the indenter's shape.
 #[derive(Serialize)]
 struct TableAt<'a> {
     gel: &'a Keyed<Gel>,
@@ -51,7 +53,7 @@ impl Recipe for TableAt<'_> {
 }
 
 impl<'a> DepthTableStore<'a> {
-    /// Tables of a gel, which are not kept.
+    /// Tables of a gel, without a cache on disk.
     pub fn of(gel: Gel, progress: &'a dyn Progress) -> Result<Self, WorkError> {
         Ok(Self {
             gel: Keyed::new(gel)?,
@@ -61,7 +63,8 @@ impl<'a> DepthTableStore<'a> {
         })
     }
 
-    /// The same, kept in a folder, which may hold those of other gels as well. `program` tells one build of the program from another.
+    /// The same with a cache in a folder, which may hold tables of other gels as well. `program`
+    /// identifies the build of the program.
     pub fn kept_in(self, folder: &Path, program: &str) -> Self {
         Self {
             store: Some(Store::new(folder, program)),
@@ -69,12 +72,12 @@ impl<'a> DepthTableStore<'a> {
         }
     }
 
-    /// The same with tables of a fast gel, if there is one: those are not kept.
+    /// The same with tables of a surrogate, if there is one. These are not cached.
     pub fn with_fast(self, fast: Option<&'a FastTables>) -> Self {
         Self { fast, ..self }
     }
 
-    /// The tables at places, from their files or computed now, in order.
+    /// The tables at locations, from the cache or computed now, in order.
     fn compute(&self, places: &[PressPlace]) -> Result<Vec<DepthTable>, SourceError> {
         self.progress.more_steps(places.len());
         places
@@ -129,7 +132,8 @@ impl DepthTableSource for DepthTableStore<'_> {
         let is_laid = |index: &usize| lattices.iter().any(|laid| laid.members.contains(index));
         let alone: Vec<usize> = (0..places.len()).filter(|index| !is_laid(index)).collect();
 
-        // All that is to be simulated in one go, so that no thread waits for the last place of each group.
+        // All solutions run in one parallel loop, so that no thread waits for the last location of
+        // each group.
         let depths_mm = lattices
             .iter()
             .map(|laid| self.depth_mm(laid))
@@ -168,11 +172,11 @@ impl DepthTableSource for DepthTableStore<'_> {
     }
 }
 
-/// Places that differ in nothing but where and how deep they are, and the lattice that stands for them.
+/// Requests that differ in location and depth alone, and the lattice that replaces them.
 struct Laid {
     members: Vec<usize>,
     lattice: Lattice,
-    /// One of them, as deep as the deepest and with as much force as the most.
+    /// One of the requests, with the largest depth and the largest force of all.
     place: PressPlace,
 }
 
@@ -190,7 +194,7 @@ impl Laid {
 }
 
 impl DepthTableStore<'_> {
-    /// A lattice over places of one kind, if it has fewer places than they are.
+    /// A lattice over requests of one kind, if it has fewer locations than the requests have.
     fn lay(&self, places: &[PressPlace], members: Vec<usize>) -> Option<Laid> {
         let own = || members.iter().map(|&index| &places[index]);
         let at = |place: &PressPlace| DVec2::new(place.x_mm, place.y_mm);
@@ -214,12 +218,13 @@ impl DepthTableStore<'_> {
         })
     }
 
-    /// How deep a lattice's places are to be pressed, mm.
+    /// The depth to which a lattice's locations are pressed, mm.
     fn depth_mm(&self, laid: &Laid) -> Result<f64, SourceError> {
         if laid.place.enough_force_n.is_none() {
             return Ok(laid.place.depth_mm);
         }
-        // A gel gives most at its corners: they tell how deep all places have to go.
+        // A gel is softest at its corners: the depths that are needed there suffice at all
+        // locations.
         let corners = laid.at(
             laid.lattice.corners_mm(),
             laid.place.depth_mm,
@@ -230,7 +235,7 @@ impl DepthTableStore<'_> {
     }
 }
 
-/// What places of one lattice have in common.
+/// What all requests of one lattice have in common.
 fn kind(place: &PressPlace) -> Result<Vec<u8>, SourceError> {
     Ok(serde_json::to_vec(&PressPlace {
         x_mm: 0.0,

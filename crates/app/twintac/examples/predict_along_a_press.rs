@@ -1,4 +1,5 @@
-//! What a trained twin would read along a press: `cargo run --release --example predict_along_a_press -- runs/demo/model`.
+//! Predicts the readings along a press by a trained twin:
+//! `cargo run --release --example predict_along_a_press -- runs/demo/model`.
 #![allow(clippy::print_stdout)] // programs print
 
 use std::path::Path;
@@ -10,7 +11,7 @@ fn main() -> Result<(), Error> {
     predict(Path::new(folder.as_deref().unwrap_or("runs/demo/model"))).map(drop)
 }
 
-/// Prints time, depth, force and every reading of each frame, as comma-separated columns.
+/// Prints time, depth, force and all readings of each frame, as comma-separated columns.
 pub fn predict(model: &Path) -> Result<Prediction, Error> {
     let twin = Twin::load(model)?;
     let press = Press::with("cylinder").at_mm(2.0, 1.0).depth_mm(1.0).hold_s(0.5);

@@ -1,9 +1,10 @@
-//! Reads PhysTac: an emulated one, or yours: `cargo run --example read_a_sensor -- /dev/i2c-1 8`, 8 being its counts per Pa.
+//! Reads an emulated PhysTac, or yours: `cargo run --example read_a_sensor -- /dev/i2c-1 8`, where
+//! 8 is its number of counts per Pa.
 #![allow(clippy::print_stdout)] // programs print
 
 use twintac::{Error, Reader, Sensor};
 
-/// Frames to read: about three seconds. The emulated ball presses after the first.
+/// Number of frames: about three seconds. The emulated ball presses after the first second.
 const FRAMES: usize = 350;
 
 fn main() -> Result<(), Error> {
@@ -15,7 +16,7 @@ fn main() -> Result<(), Error> {
     )
 }
 
-/// Prints what each taxel reads above what it read untouched.
+/// Prints the reading of each taxel above its untouched value.
 pub fn read(bus: Option<&str>, counts_per_pa: Option<u16>) -> Result<(), Error> {
     let sensor = Sensor::phystac()?;
     let mut reader = match bus {

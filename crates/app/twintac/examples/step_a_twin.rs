@@ -1,4 +1,4 @@
-//! A twin that is stepped frame by frame: `cargo run --release --example step_a_twin -- runs/demo/model`.
+//! Steps a twin frame by frame: `cargo run --release --example step_a_twin -- runs/demo/model`.
 #![allow(clippy::print_stdout)] // programs print
 
 use std::path::Path;
@@ -10,21 +10,21 @@ fn main() -> Result<(), Error> {
     step(Path::new(folder.as_deref().unwrap_or("runs/demo/model"))).map(drop)
 }
 
-/// Presses ever deeper, a hundred frames a second, and prints what each taxel would read.
+/// Presses deeper and deeper at 100 frames a second, and prints the reading of each taxel.
 pub fn step(model: &Path) -> Result<Vec<f64>, Error> {
     let twin = Twin::load(model)?;
     let mut pressed = twin.at(&Press::with("cylinder").at_mm(2.0, 1.0).depth_mm(1.0))?;
     let mut readings_kpa = vec![0.0; twin.sensor().taxels().count()];
     for frame in 0..160 {
         let depth_mm = 0.5 - 0.5 * (0.02 * f64::from(frame)).cos();
-        pressed.step(0.01, depth_mm, &mut readings_kpa); // what comes from a robot goes here
+        pressed.step(0.01, depth_mm, &mut readings_kpa); // the depth comes from your robot or simulator
         println!(
             "{depth_mm:.3} mm, {:.3} N, {readings_kpa:.2?} ± {:.2?} kPa",
             pressed.force_n(),
             pressed.half_width_kpa().unwrap_or_default()
         );
         if let Some((unlikeness, true)) = pressed.unlikeness() {
-            println!("unlike what taught: {unlikeness:.1}");
+            println!("out-of-distribution score: {unlikeness:.1}");
         }
     }
     Ok(readings_kpa)

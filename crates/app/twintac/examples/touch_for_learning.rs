@@ -1,4 +1,5 @@
-//! A thousand imperfect sensors under a thousand balls: `cargo run --release --example touch_for_learning`.
+//! Steps a thousand imperfect sensors under a thousand balls:
+//! `cargo run --release --example touch_for_learning`.
 #![allow(clippy::print_stdout)] // programs print
 
 use std::time::Instant;
@@ -22,11 +23,13 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-/// Presses each ball a little deeper at each step. Returns what all sensors read at last, kPa, and how long it took, s.
+/// Presses each ball a little deeper at each step. Returns the last readings of all sensors, kPa,
+/// and the time that the steps took, s.
 pub fn step(imperfection: Imperfection, n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
     let n_threads = std::thread::available_parallelism().map_or(1, usize::from);
     let (gel, seed) = (FastGel::phystac()?, 1);
-    // A trained twin in the place of `None` would add the gains and the memory of its barometers.
+    // A trained twin instead of `None` adds the gains and the viscoelastic relaxation of its
+    // barometers.
     let mut sensors = SensorBatch::new(&gel, None, imperfection, [N_SENSORS, n_threads], seed);
     let bodies = [Body::new(&Shape::Sphere { radius_mm: 6.0 }, &Default::default())?];
     let ends: Vec<usize> = (1..=N_SENSORS).collect(); // one body touches each sensor

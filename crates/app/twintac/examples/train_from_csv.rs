@@ -1,4 +1,5 @@
-//! Trains a twin of a sensor on presses from a CSV file. For yours: describe the sensor and how to read the file, as those here do.
+//! Trains a twin of a sensor on presses from a CSV file. For your own sensor, write a description
+//! of it and an import description of your file, like those here.
 #![allow(clippy::print_stdout)] // programs print
 
 use std::path::Path;
@@ -9,12 +10,12 @@ fn main() -> Result<(), Error> {
     train(Path::new("runs/from-csv")).map(drop)
 }
 
-/// Starts a run in a folder, and has it make a twin and a report: takes about half a minute.
+/// Starts a run in a folder, trains a twin and writes a report: takes about half a minute.
 pub fn train(folder: &Path) -> Result<Metrics, Error> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data");
     let sensor = Sensor::phystac()?; // or Sensor::read("my-sensor.toml")?
 
-    let mut settings = RunSettings::default(); // coarse and short; leave them out for a good twin
+    let mut settings = RunSettings::default(); // coarse and short; use the defaults for a good twin
     settings.simulate.edges_per_height = 4.0;
     settings.simulate.edges_per_contact_radius = 4.0;
     settings.train.epochs = 40;

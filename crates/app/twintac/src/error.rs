@@ -1,21 +1,22 @@
-//! What can go wrong.
+//! The error type of the library.
 
-/// What is wrong, where, and what to do. The text of an error leaves its [`source`](std::error::Error::source) out.
+/// Says what is wrong, where, and what to do. The text of an error does not contain its
+/// [`source`](std::error::Error::source).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A sensor description cannot be used.
     #[error(transparent)]
     Sensor(#[from] twintac_sensor::SensorError),
-    /// The gel cannot be pressed as asked for.
+    /// The gel cannot be pressed as requested.
     #[error(transparent)]
     Gel(#[from] twintac_simulate::SimulateError),
     /// The solver found no equilibrium at a depth.
     #[error("the gel cannot be pressed {depth_mm} mm deep: {reason}; press less deep")]
     Depth {
-        /// The depth that was asked for, mm.
+        /// The requested depth, mm.
         depth_mm: f64,
-        /// Where the press ended, and why.
+        /// The depth at which the press ended, and why.
         reason: String,
     },
     /// A recording cannot be read.
@@ -38,17 +39,17 @@ pub enum Error {
     #[cfg(feature = "twin")]
     #[error("the twin's settings of the simulation cannot be used")]
     TwinSettings(#[from] serde_json::Error),
-    /// A path can't be.
+    /// A path is impossible.
     #[error(transparent)]
     Path(#[from] twintac_protocol::PathError),
-    /// A shape can't be.
+    /// A shape is impossible.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
-    /// A fast twin cannot be read.
+    /// A surrogate ([`FastGel`](crate::FastGel)) cannot be read.
     #[cfg(feature = "fast")]
     #[error(transparent)]
     Fast(#[from] twintac_fast::FastFileError),
-    /// A fast twin is not that of a sensor.
+    /// A surrogate ([`FastGel`](crate::FastGel)) belongs to another sensor.
     #[cfg(feature = "fast")]
     #[error(transparent)]
     FastMismatch(#[from] twintac_fast::FastGelMismatch),
@@ -60,20 +61,20 @@ pub enum Error {
     #[cfg(feature = "run")]
     #[error(transparent)]
     Run(#[from] twintac_work::WorkError),
-    /// Readings cannot be followed back to contacts.
+    /// Contacts cannot be estimated from readings.
     #[cfg(feature = "fast")]
     #[error(transparent)]
     Inverse(#[from] twintac_inverse::InverseError),
-    /// A task cannot be.
+    /// A reinforcement-learning task cannot be made or stepped as requested.
     #[cfg(feature = "tasks")]
     #[error(transparent)]
     Task(#[from] twintac_tasks::TaskError),
 }
 
-/// Where an error stands, as far as that is known.
+/// The place of an error, as far as it is known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ErrorPlace {
-    /// The file, as it was named.
+    /// The file, as the caller named it.
     pub file: Option<String>,
     /// Line, from 1.
     pub line: Option<u64>,
@@ -82,7 +83,7 @@ pub struct ErrorPlace {
 }
 
 impl Error {
-    /// Whether it only says that a source, such as a log that is played, has no further frames.
+    /// Whether the error only says that a source, such as a replayed log, has no more frames.
     #[cfg(feature = "live")]
     #[must_use]
     pub fn is_over(&self) -> bool {
@@ -91,7 +92,7 @@ impl Error {
         matches!(self, Self::Live(LiveError::Source(SourceError::Over)))
     }
 
-    /// Where the error stands.
+    /// The place of the error.
     #[must_use]
     pub fn place(&self) -> ErrorPlace {
         match self {

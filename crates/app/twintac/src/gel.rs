@@ -1,4 +1,4 @@
-//! A sensor's gel, pressed.
+//! A sensor's gel, pressed by finite elements.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -10,23 +10,24 @@ use twintac_simulate::{Followed, GelState, Keyframe, PressPlace, SimulateSetting
 
 use crate::{Error, Pose, Press, PressFrame, Sensor};
 
-/// Places between two poses of [`Gel::state`] at which the mesh is made fine.
+/// Number of locations between two poses of [`Gel::state`] at which the mesh is refined.
 const PLACES_BETWEEN: f64 = 16.0;
 
-/// The gel of a sensor, ready to be pressed: a finite-element model with the material of the description.
+/// The gel of a sensor, ready to be pressed: a finite-element model with the material of the
+/// description.
 #[derive(Clone, Debug)]
 pub struct Gel {
     pub(crate) gel: twintac_simulate::Gel,
 }
 
 impl Gel {
-    /// The gel of a sensor, simulated as finely as usual.
+    /// The gel of a sensor with the default settings for single presses.
     #[must_use]
     pub fn of(sensor: &Sensor) -> Self {
         Self::with_settings(sensor, SimulateSettings::fine())
     }
 
-    /// The gel of a sensor, simulated as finely as asked for.
+    /// The gel of a sensor with other settings of the simulation.
     #[must_use]
     pub fn with_settings(sensor: &Sensor, settings: SimulateSettings) -> Self {
         let sensor = Arc::clone(&sensor.file().sensor);
@@ -35,19 +36,22 @@ impl Gel {
         }
     }
 
-    /// The same gel, whose frames along paths and of [`Gel::state`] are answered within a wall time, settled or not: `converged` of a frame says which, `quality.residual` how
-    /// nearly. Frames with a prescribed force take the time that they need. Such results are not reproducible.
+    /// The same gel with a limit of the wall time of each frame along paths and of [`Gel::state`].
+    /// A frame is returned at the limit even if it has not converged: `converged` says so, and
+    /// `quality.residual` is what is left. Frames with a prescribed force ignore the limit. Such
+    /// results are not reproducible.
     #[must_use]
     pub fn with_deadline(mut self, deadline: Duration) -> Self {
         self.gel = self.gel.with_deadline(deadline);
         self
     }
 
-    /// Presses the gel down to the depth of the press: takes about a second. A gel whose material relaxes does so while it is pressed, at the
-    /// speed of the press.
+    /// Presses the gel down to the depth of the press: takes about a second. If the material
+    /// relaxes, it does so during the press, at the speed of the press.
     ///
     /// # Errors
-    /// An indenter that the sensor does not have; a place beside the gel; a depth at which the solver finds no equilibrium.
+    /// An indenter that the sensor does not have; a location beside the gel; a depth at which the
+    /// solver finds no equilibrium.
     pub fn press(&self, press: &Press) -> Result<Pressed, Error> {
         let plan = &press.plan;
         let place = PressPlace {
@@ -77,16 +81,18 @@ impl Gel {
         }
     }
 
-    /// Where an indenter, lowered from a pose in the gel's frame whose height is ignored, first touches the undeformed gel.
+    /// The pose at which an indenter first touches the undeformed gel, when it is lowered from the
+    /// pose `above` in the gel's frame (whose height is ignored).
     ///
     /// # Errors
-    /// An indenter that the sensor does not have; a place beside the gel.
+    /// An indenter that the sensor does not have; a location beside the gel.
     pub fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, Error> {
         Ok(self.gel.touch(self.gel.shape(indenter)?, above)?)
     }
 
-    /// The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go,
-    /// at least one: the mesh is fine along the straight ways between them, and for the deepest of them. Takes about a second.
+    /// The gel at rest, to be pressed frame by frame with poses as they come. `poses`, in the gel's
+    /// frame, outline where the indenter will go; give at least one. The mesh is fine along the
+    /// straight lines between them, and for the deepest of them. Takes about a second.
     ///
     /// ```
     /// use twintac::{Error, Gel, Pose, Sensor, SimulateSettings};
@@ -107,7 +113,7 @@ impl Gel {
     /// An indenter that the sensor does not have; a first pose beside the gel.
     ///
     /// # Panics
-    /// No pose.
+    /// If `poses` is empty.
     pub fn state(&self, indenter: &str, poses: &[Pose]) -> Result<GelState, Error> {
         assert!(!poses.is_empty(), "at least one pose");
         let path = PressPath {
@@ -117,11 +123,13 @@ impl Gel {
         Ok(self.gel.state_along(self.gel.shape(indenter)?, &path)?)
     }
 
-    /// Takes an indenter along a path, frame by frame. `advanced` hears of each, and says whether to go on. A path that cannot be followed to its end is no error:
-    /// its frames end early, and [`Followed::failure`] says why.
+    /// Moves an indenter along a path, frame by frame. `advanced` is called after each frame and
+    /// says whether to continue. A path that cannot be followed to its end is no error: its frames
+    /// end early, and [`Followed::failure`] says why.
     ///
     /// # Errors
-    /// An indenter that the sensor does not have; a first pose beside the gel; a point outside the gel, or with the name of a taxel.
+    /// An indenter that the sensor does not have; a first pose beside the gel; a point outside the
+    /// gel, or with the name of a taxel.
     pub fn follow(
         &self,
         path: &PressPath,
@@ -131,7 +139,7 @@ impl Gel {
     }
 }
 
-/// A simulated press, from first touch to full depth.
+/// A simulated press, from first contact to full depth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pressed {
     frames: Vec<PressFrame>,
@@ -139,11 +147,12 @@ pub struct Pressed {
 }
 
 impl Pressed {
-    /// What every number here is: no sensor was read, and no twin was trained.
+    /// Provenance of every number of this type: no sensor was read, and no twin was trained.
     pub const PROVENANCE: &'static str = "simulated";
 
-    /// Hydrostatic pressure in the gel over each taxel's port at full depth, kPa; `[n_taxels]`. A barometer there would read this if it
-    /// followed the gel without gain, delay and creep; what a real one makes of it, a trained twin tells.
+    /// Hydrostatic pressure in the gel over each taxel's port at full depth, kPa; `[n_taxels]`. An
+    /// ideal barometer, without gain, delay and relaxation, would read this. A trained
+    /// [`Twin`](crate::Twin) predicts what a real one reads.
     #[must_use]
     pub fn readings_kpa(&self) -> &[f64] {
         &self.deepest.port_pressure_kpa

@@ -1,14 +1,24 @@
-//! Barometric touch sensors and their digital twin.
+//! Simulation, reading and learning for barometric touch sensors, and their digital twin.
 //!
-//! Press a simulated gel, read a sensor, learn from recordings what its barometers make of the gel's pressure, and ask the trained twin
-//! what it would read.
+//! A barometric touch sensor consists of pressure chips (MEMS barometers) under rubber. They are
+//! cheap and robust, and they read the pressure at a few points, not the contact. This library
+//!
+//! - presses the rubber in simulation, by finite elements or by a network that is trained on them
+//!   (microseconds a reading);
+//! - reads such sensors, on an I²C bus, a serial line, by UDP, or emulated;
+//! - trains a *digital twin* on recordings of a real sensor, which predicts what its barometers
+//!   read, with intervals;
+//! - estimates contacts from readings: location, depth, force and shape.
+//!
+//! It has the sensor PhysTac built in (eight barometers, 34 × 18 × 8.5 mm), and takes any other
+//! from a description in a TOML file.
 //!
 //! ```toml
 //! [dependencies]
 //! twintac = { path = "crates/app/twintac" }  # of a checkout; twintac is not published yet
 //! ```
 //!
-//! A ball, pressed into PhysTac, and what reaches its eight ports:
+//! This program presses a ball into PhysTac, and prints the pressures at its eight ports:
 //!
 //! ```
 //! use twintac::{Error, Gel, Press, Pressed, Sensor};
@@ -24,37 +34,62 @@
 //! }
 //! ```
 //!
-//! What is pressed, as its description says (`twintac sensor show sensors/phystac.toml --draw phystac.svg`):
+//! The sensor as its description says
+//! (`twintac sensor show sensors/phystac.toml --draw phystac.svg`):
 //!
 #![doc = concat!("<div style=\"background: white; padding: 1em\">", include_str!("../phystac.svg"), "</div>")]
 //!
-//! # What there is
+//! # How the parts fit together
+//!
+//! ```text
+//! description (TOML) ──► Sensor ──► Gel ──► Pressed, GelState        finite elements
+//!                           │        └────► FastGel, SensorBatch     surrogate, many sensors
+//!                           │
+//!                           ├─────► Reader ──► Reading ───────────── a sensor, real or emulated
+//!                           │
+//! recordings (CSV, logs) ───┴─────► Run ─────► Twin ──► Prediction   trained on recordings
+//!                                                └────► Locator      contacts from readings
+//! ```
+//!
+//! A barometer does not read the pressure at its port exactly: it has a gain, a static
+//! nonlinearity, and viscoelastic relaxation of the rubber around it. The [`Gel`] computes the
+//! pressures at the ports; the [`Twin`] has learned the rest from recordings.
+//!
+//! # Main types
 //!
 //! | type | what it is | feature |
 //! |---|---|---|
-//! | [`Sensor`] | a sensor as its description says: gel, taxels, indenters | |
-//! | [`Press`] | where, with what, how deep and how fast to press | |
-//! | [`Gel`], [`Pressed`] | the sensor's gel, and what it does under a press: forces, and pressures at the ports | |
-//! | [`GelState`]; [`PressPath`], [`Followed`] | the gel pressed frame by frame, as poses come; a path of poses and forces, and what the gel does along it | |
+//! | [`Sensor`] | a sensor's description: gel, taxels, indenters | |
+//! | [`Press`] | a press: with which indenter, where, how deep, how fast | |
+//! | [`Gel`], [`Pressed`] | the sensor's gel, and its response to a press: forces, and pressures at the ports | |
+//! | [`GelState`] | the gel, pressed frame by frame with poses as they come | |
+//! | [`PressPath`], [`Followed`] | a path of poses and forces, and the gel's response along it | |
 //! | [`PressureMap`] | pressure between the taxels, and a picture of it | `map` |
-//! | [`Recording`] | recorded presses, as Parquet or from CSV files of any laboratory ([`Import`]) | `recording` |
-//! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
-//! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
-//! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
-//! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
-//! | [`SensorBatch`], [`Imperfection`], [`CoupledBatch`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
-//! | [`Tasks`], [`Kind`] | many environments of a task for reinforcement learning | `tasks` |
-//! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
-//! | [`Locator`], [`LocatorTracker`] | the same by a trained twin, whose memory is taken off the readings | `run` |
-//! | [`Dataset`] | many simulated presses, made in shards by as many machines as there are | `run` |
-//! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
+//! | [`Recording`], [`Import`] | recorded presses, from Parquet or from CSV files of any laboratory | `recording` |
+//! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus or a serial line, or of an emulated one | `live` |
+//! | [`Run`] | a folder in which recordings become a trained and evaluated twin, and a report | `run` |
+//! | [`Twin`], [`Prediction`] | a trained twin, and its predicted readings along a press | `twin` |
+//! | [`TwinAtPlace`], [`TwinState`] | a twin, stepped frame by frame: at one location, or with given port pressures for thousands of sensors | `twin` |
+//! | [`FastGel`], [`FastBatch`], [`Friction`] | the surrogate of the gel: about 5 µs a reading, thousands of sensors in one call; friction of sliding contacts | `fast` |
+//! | [`SensorBatch`], [`Imperfection`], [`CoupledBatch`] | the same with a twin's gains and relaxation, with sensor variation, and with friction of bodies that move freely | `sensors` |
+//! | [`Tasks`], [`Kind`] | tasks for reinforcement learning, many environments in one call | `tasks` |
+//! | [`Inverse`], [`Tracker`], [`Contact`] | contact estimation: from readings to location, depth, force, and which of the known shapes | `fast` |
+//! | [`Locator`], [`LocatorTracker`] | contact estimation by a trained twin, which accounts for relaxation | `run` |
+//! | [`Dataset`] | many simulated presses, made in shards on any number of machines | `run` |
 //!
-//! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
-//! along -z. Numbers say where they come from: `real`, `emulated` or `simulated`.
+//! Errors are one type, [`Error`]: its text says what is wrong and what to do, and [`Error::place`]
+//! names file, line and field.
 //!
-//! # Five lines more
+//! # Units, frames, provenance
 //!
-//! A picture of what the taxels read:
+//! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame
+//! has z up and z = 0 at the board; presses go along -z. The origin of an indenter is the point
+//! that first touches a flat gel. Every number states its provenance: `real`, `emulated` (devices
+//! in software, read over their own protocols) or `simulated`.
+//!
+//! # Examples
+//!
+//! The pressure between the taxels, from their readings:
 //!
 //! ```
 //! # #[cfg(feature = "map")] {
@@ -67,7 +102,7 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! A sensor that is read, here an emulated one:
+//! Reading a sensor, here an emulated one:
 //!
 //! ```
 //! # #[cfg(feature = "live")] {
@@ -80,7 +115,8 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! A twin of PhysTac, trained on the emulated bench in minutes, and what it would read along a press:
+//! A twin of PhysTac, trained on the emulated bench in about a minute, and its prediction along a
+//! press:
 //!
 //! ```no_run
 //! # #[cfg(feature = "run")] {
@@ -99,7 +135,7 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! The same twin, stepped as depths come:
+//! The same twin, stepped with depths as they come:
 //!
 //! ```no_run
 //! # #[cfg(feature = "twin")] {
@@ -116,7 +152,8 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! Touch for learning, about ten microseconds a reading, with any number of bodies of any shape:
+//! The surrogate of the gel for learning, about 5 µs a reading, with any number of bodies of any
+//! shape:
 //!
 //! ```
 //! # #[cfg(feature = "fast")] {
@@ -133,7 +170,7 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! And back, frame by frame, from readings to what touches:
+//! Contact estimation, frame by frame, from readings to location, depth and force:
 //!
 //! ```
 //! # #[cfg(feature = "fast")] {
@@ -149,25 +186,37 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The folder `examples/` has these as programs, and one that trains a twin on CSV files of your own.
+//! The folder `examples/` has complete programs, among them one that trains a twin on CSV files of
+//! your own.
 //!
 //! # Features
 //!
-//! All are on by default. `default-features = false` leaves the gel alone, which compiles in a fraction of the time: no network, no Parquet.
+//! All features are on by default. `default-features = false` leaves the finite-element gel alone,
+//! which compiles in a fraction of the time: no network, no Parquet.
 //!
 //! | feature | what it adds |
 //! |---|---|
-//! | `fast` | touch for learning, without finite elements, and back from readings to contacts |
-//! | `sensors` | many imperfect sensors stepped in one call; brings `fast` and `twin` |
-//! | `tasks` | tasks of touch for reinforcement learning; brings `map` and `sensors` |
+//! | `fast` | the surrogate of the gel, without finite elements, and contact estimation |
+//! | `sensors` | many imperfect sensors stepped in one call; includes `fast` and `twin` |
+//! | `tasks` | tasks for reinforcement learning; includes `map` and `sensors` |
 //! | `map` | pressure maps and pictures |
 //! | `recording` | recorded presses: Parquet, CSV |
-//! | `live` | reading a sensor; brings `recording` |
-//! | `twin` | trained twins: a neural network; brings `recording` |
-//! | `run` | the pipeline from recordings to a judged twin; brings `twin` |
+//! | `live` | reading a sensor; includes `recording` |
+//! | `twin` | trained twins: a neural network; includes `recording` |
+//! | `run` | the pipeline from recordings to a trained and evaluated twin; includes `twin` |
 //!
-//! What is below this crate has the details: `twintac-simulate` and `twintac-softbody` the finite elements, `digitac` the twin, `phystac` the
-//! `no_std` drivers, `twintac-run` the pipeline.
+//! # Limits
+//!
+//! Twins have been trained on recordings of three real sensors, made by others. No PhysTac has been
+//! built yet, and the drivers have not been tested on hardware: figures of PhysTac are `emulated`
+//! or `simulated`. Sensors with cameras under gel are out of scope.
+//!
+//! # The crates below
+//!
+//! This crate re-exports what a user needs. The crates below have the details: `twintac-simulate`
+//! and `twintac-softbody` the finite elements, `digitac` the twin, `phystac` the `no_std` drivers,
+//! `twintac-run` the pipeline. The library reads no environment variable and no argument, and
+//! prints nothing.
 
 mod error;
 mod gel;
@@ -233,7 +282,7 @@ pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, 
 #[cfg(feature = "run")]
 pub use twintac_work::{Caller, Progress, Silent, WorkError, sha256_of_file};
 
-/// Snippets of the checkout's pages, which are tests.
+/// Snippets of pages of the checkout. They are run as tests.
 #[cfg(doctest)]
 #[allow(rustdoc::invalid_codeblock_attributes)] // titles of blocks that are not Rust
 mod pages {

@@ -1,4 +1,4 @@
-//! Pressure between the taxels.
+//! The pressure between the taxels.
 
 use std::path::Path;
 
@@ -7,19 +7,20 @@ use twintac_plot::{HeatMap, HeatMaps, Scene};
 
 use crate::{Error, Sensor};
 
-/// A continuous map over the gel of what a few taxels read.
+/// A continuous map over the gel, interpolated from the readings of a few taxels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressureMap {
     map: twintac_map::PressureMap,
-    /// Of the taxels that have a reading.
+    /// Positions of the taxels that have a reading, mm.
     taxels_mm: Vec<[f64; 2]>,
     missing: Vec<String>,
     title: String,
 }
 
 impl PressureMap {
-    /// The map through readings of a sensor above its unloaded baseline, kPa; `[n_taxels]`. It has 96 columns and 64 rows. A taxel without a reading, NaN, is left out: the map
-    /// is that of the other taxels, and NaN everywhere if there is none.
+    /// The map through readings above the unloaded baseline, kPa; `[n_taxels]`. It has 96 columns
+    /// and 64 rows. A taxel without a reading (NaN) is left out: the map is interpolated from the
+    /// other taxels, and is NaN everywhere if there is none.
     ///
     /// # Errors
     /// Another number of readings than the sensor has taxels; a reading that is infinite.
@@ -58,19 +59,19 @@ impl PressureMap {
         &self.map.pressure_kpa
     }
 
-    /// Names of the taxels that had no reading: the map was made without them.
+    /// Names of the taxels without a reading. The map does not use them.
     #[must_use]
     pub fn missing(&self) -> &[String] {
         &self.missing
     }
 
-    /// Columns and rows.
+    /// Numbers of columns and rows.
     #[must_use]
     pub fn grid(&self) -> [usize; 2] {
         self.map.grid
     }
 
-    /// Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
+    /// Draws the map into a file, `.svg` or `.png`, with marks at the taxels that have a reading.
     ///
     /// # Errors
     /// A name with another ending; a file that cannot be written.
@@ -78,7 +79,7 @@ impl PressureMap {
         Ok(self.scene().write(path.as_ref())?)
     }
 
-    /// The map as a picture, with the taxels that have a reading marked: the text of an SVG file.
+    /// The map as the text of an SVG file, with marks at the taxels that have a reading.
     #[must_use]
     pub fn svg(&self) -> String {
         twintac_plot::svg(&self.scene())

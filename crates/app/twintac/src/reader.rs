@@ -1,4 +1,4 @@
-//! A sensor that is being read.
+//! Reads a sensor.
 
 use std::path::Path;
 use std::time::Duration;
@@ -9,10 +9,11 @@ use twintac_source::Known;
 
 use crate::{Error, Sensor};
 
-/// How long to wait for a frame at a time.
+/// How long one call waits for a frame.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Reads a sensor frame by frame: on an I²C bus of Linux, a serial line, from datagrams, a log, or emulated.
+/// Reads a sensor frame by frame: on an I²C bus of Linux, on a serial line, from datagrams, from a
+/// log, or emulated.
 #[derive(Debug)]
 pub struct Reader {
     live: Live,
@@ -22,24 +23,30 @@ pub struct Reader {
 /// A frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Its number, from 0, of all that were asked of the sensor: numbers that are missing were missed, or the bus gave none. The first frames made the tare.
+    /// Its number, from 0, counting all frames that were requested from the sensor. Missing numbers
+    /// are frames that were missed or that the bus did not deliver. The first frames were used for
+    /// the tare.
     pub sequence: u64,
-    /// When the taxels were triggered, s since the sensor was switched on.
+    /// Time at which the taxels were triggered, s since the sensor was switched on.
     pub time_s: f64,
-    /// Readings above what the taxels read untouched, kPa; `[n_taxels]`, `None` of a taxel that gives no usable one.
+    /// Readings above the untouched sensor, kPa; `[n_taxels]`, `None` for a taxel without a usable
+    /// reading.
     pub readings_kpa: Vec<Option<f64>>,
-    /// Why a taxel's reading cannot be used, in a word or two; `[n_taxels]`, `None` of a taxel that works.
+    /// Why a taxel's reading cannot be used, in a word or two; `[n_taxels]`, `None` for a taxel
+    /// that works.
     pub faults: Vec<Option<&'static str>>,
-    /// Temperatures of the barometers, °C; `[n_taxels]`, `None` of one that gives none.
+    /// Temperatures of the barometers, °C; `[n_taxels]`, `None` for one without a temperature.
     pub temperatures_c: Vec<Option<f64>>,
 }
 
 impl Reader {
-    /// Reads the sensor on `/dev/i2c-N`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of
-    /// barometers that do not say it themselves, confirmed by who knows the parts; without it, the description's counts.
+    /// Reads the sensor on `/dev/i2c-N`. Nothing may touch it at the start: the first frames make
+    /// the tare. `counts_per_pa` is the scale of barometers that do not state it themselves,
+    /// confirmed by a person who knows the parts; the default is the scale of the description.
     ///
     /// # Errors
-    /// A bus that cannot be opened; a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
+    /// A bus that cannot be opened; a sensor that does not answer, that does not read the pressure
+    /// of free air, or whose scale nobody has confirmed.
     pub fn open(bus: impl AsRef<Path>, sensor: &Sensor, counts_per_pa: Option<u16>) -> Result<Self, Error> {
         let known = Known {
             counts_per_pa,
@@ -48,17 +55,19 @@ impl Reader {
         Self::from(&Origin::Bus(bus.as_ref().to_owned()), sensor, &known)
     }
 
-    /// Reads the frames that a microcontroller writes to a serial port, as a file describes them (TOML). Nothing may touch the sensor meanwhile: the
-    /// first frames make the tare.
+    /// Reads the frames that a microcontroller writes to a serial port. The file `line` describes
+    /// them (TOML). Nothing may touch the sensor at the start: the first frames make the tare.
     ///
     /// # Errors
-    /// A port that cannot be opened; a description that is wrong, or of another number of taxels; a line on which no frame comes.
+    /// A port that cannot be opened; a description that is wrong, or of another number of taxels; a
+    /// line without frames.
     pub fn serial(port: &str, line: impl AsRef<Path>, sensor: &Sensor) -> Result<Self, Error> {
         let (port, line) = (port.to_owned(), line.as_ref().to_owned());
         Self::from(&Origin::Serial { port, line }, sensor, &Known::default())
     }
 
-    /// Reads frames that come as datagrams to an address of this computer, such as `0.0.0.0:9000`, as a file describes them (TOML).
+    /// Reads frames from datagrams to an address of this computer, such as `0.0.0.0:9000`. The file
+    /// `line` describes them (TOML).
     ///
     /// # Errors
     /// As [`serial`](Self::serial).
@@ -67,7 +76,7 @@ impl Reader {
         Self::from(&Origin::Udp { address, line }, sensor, &Known::default())
     }
 
-    /// Plays the frames of a log (MCAP) at their own pace.
+    /// Replays the frames of a log (MCAP) at their own pace.
     ///
     /// # Errors
     /// A log that cannot be read, has no frames, or is of other taxels.
@@ -75,10 +84,11 @@ impl Reader {
         Self::from(&Origin::Log(log.as_ref().to_owned()), sensor, &Known::default())
     }
 
-    /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about.
+    /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that
+    /// wanders about.
     ///
     /// # Errors
-    /// A sensor that is not read this way.
+    /// A sensor that is not read over a bus.
     pub fn emulated(sensor: &Sensor) -> Result<Self, Error> {
         Self::from(&Origin::Emulated, sensor, &Known::default())
     }
@@ -93,8 +103,9 @@ impl Reader {
         Ok(Self { live, tare })
     }
 
-    /// Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile:
-    /// the next frames make a new tare.
+    /// Compensates readings for the drift of their zeros with temperature, by a file (TOML) that
+    /// `twintac characterize` made. Nothing may touch the sensor during the call: the next frames
+    /// make a new tare.
     ///
     /// # Errors
     /// A file that is wrong, or of another sensor; those of [`read`](Self::read).
@@ -104,34 +115,36 @@ impl Reader {
         Ok(())
     }
 
-    /// How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures. Zeros move with it.
+    /// Temperature change since the tare of the chip that changed most, K; negative if it is
+    /// colder; `None` without temperatures. Zeros drift with temperature.
     #[must_use]
     pub fn warmer_k(&self) -> Option<f64> {
         self.tare.warmer_k()
     }
 
-    /// Where the readings come from: `real` or `emulated`.
+    /// Provenance of the readings: `real` or `emulated`.
     #[must_use]
     pub fn provenance(&self) -> Provenance {
         self.live.about.provenance
     }
 
-    /// What was odd when the sensor was switched on, a sentence each.
+    /// Remarks from when the sensor was switched on, one sentence each.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.live.notes
     }
 
-    /// What was on the wire so far besides frames, and how often: torn lines, missing frames.
+    /// Remarks about what was received besides frames, with counts: incomplete lines, missing
+    /// frames.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         self.live.source.tally().remarks
     }
 
-    /// The next frame. Up to 256 wait for whom is late; more are missed.
+    /// The next frame. Up to 256 frames wait for a slow caller; beyond that frames are missed.
     ///
     /// # Errors
-    /// A sensor that has failed for 2 s on end or was silent for 3 s.
+    /// A sensor that has failed for 2 s without a break, or was silent for 3 s.
     pub fn read(&mut self) -> Result<Reading, Error> {
         loop {
             if let Some(reading) = self.wait(PATIENCE)? {
@@ -140,7 +153,7 @@ impl Reader {
         }
     }
 
-    /// The next frame, or `None` if none comes for so long.
+    /// The next frame, or `None` if none comes within `patience`.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -165,7 +178,7 @@ impl Reader {
     }
 }
 
-/// What the taxels of a sensor read untouched: of its next frames.
+/// Measures the untouched readings of a sensor from its next frames.
 fn tare(live: &mut Live) -> Result<Tare, Error> {
     let mut taring = Taring::new(live.about.kpa_per_k.clone());
     loop {

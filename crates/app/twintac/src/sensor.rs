@@ -1,4 +1,4 @@
-//! A sensor as it is described.
+//! A described sensor.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,7 +7,7 @@ use twintac_sensor::SensorFile;
 
 use crate::Error;
 
-/// A sensor as its description says: gel, taxels, read-out, and the indenters that it can be pressed with.
+/// A sensor, by its description: gel, taxels, read-out, and the indenters that can press it.
 #[derive(Clone, Debug)]
 pub struct Sensor {
     file: SensorFile,
@@ -25,7 +25,7 @@ impl Sensor {
     /// PhysTac's fingertip: eight barometers under a dome, 19.2 mm high.
     ///
     /// # Errors
-    /// None, unless this library was compiled with another description in its place.
+    /// None, unless this library was compiled with another description in place of this one.
     pub fn phystac_tip() -> Result<Self, Error> {
         Ok(SensorFile::phystac_tip()?.into())
     }
@@ -33,15 +33,17 @@ impl Sensor {
     /// Reads a description (TOML).
     ///
     /// # Errors
-    /// A file that cannot be read or is wrong: with the line and the field.
+    /// A file that cannot be read or is wrong; the error names line and field.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         Ok(SensorFile::read(path.as_ref())?.into())
     }
 
-    /// A description (TOML), as if it stood in the file `path`, with the surfaces that it names: the corners of their triangles, mm.
+    /// Parses a description (TOML) as if it were in the file `path`, with the surfaces that it
+    /// names: the corners of their triangles, mm.
     ///
     /// # Errors
-    /// A description that is wrong, with the line and the field; a surface that is missing, or not closed.
+    /// A description that is wrong (the error names line and field); a surface that is missing, or
+    /// not closed.
     pub fn with_surfaces(
         path: &Path,
         text: &str,
@@ -65,19 +67,19 @@ impl Sensor {
         self.file.sensor.taxels.iter().map(|taxel| &*taxel.name)
     }
 
-    /// Names of the indenters that it can be pressed with.
+    /// Names of the indenters that can press it.
     pub fn indenters(&self) -> impl Iterator<Item = &str> {
         self.file.sensor.indenters.iter().map(|indenter| &*indenter.name)
     }
 
-    /// All that the description says, and its text.
+    /// The whole description, and its text.
     #[must_use]
     pub fn file(&self) -> &SensorFile {
         &self.file
     }
 }
 
-/// A surface as an STL file, to the last bit.
+/// A surface as the bytes of an STL file.
 fn stl(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let mut text = "solid surface\n".to_owned();
     for corners in triangles {

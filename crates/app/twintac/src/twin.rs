@@ -17,7 +17,7 @@ use crate::{Error, Press, Sensor};
 #[cfg(feature = "run")]
 use crate::{Predicted, PressPath};
 
-/// A trained twin: what the barometers of one sensor would read while its gel is pressed.
+/// A trained twin: it predicts the readings of one sensor's barometers while its gel is pressed.
 #[derive(Clone, Debug)]
 pub struct Twin {
     sensor: Sensor,
@@ -26,7 +26,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// Loads a twin from the folder that a run leaves it in: `<run>/model`.
+    /// Loads a twin from a model folder of a run: `<run>/model`.
     ///
     /// # Errors
     /// A folder that holds no twin, or a damaged one.
@@ -42,23 +42,24 @@ impl Twin {
         })
     }
 
-    /// The sensor whose twin it is.
+    /// The twin's sensor.
     #[must_use]
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// Where the recordings come from that it was trained with. What it predicts is simulated.
+    /// Provenance of the recordings that it was trained on. Its predictions are `simulated`.
     #[must_use]
     pub fn trained_on(&self) -> Provenance {
         self.model.record.provenance
     }
 
-    /// What the barometers would read along a press, as many frames a second as the sensor gives: takes a few seconds. Bench and gel are as
-    /// they were found at training. [`Prediction::certainty`] says how sure the twin is.
+    /// Predicts the readings along a press, at the sensor's frame rate: takes a few seconds. Bench
+    /// and gel are as fitted in training. [`Prediction::certainty`] has the 90 % intervals and the
+    /// OOD score.
     ///
     /// # Errors
-    /// An indenter that the sensor does not have; a place that cannot be pressed.
+    /// An indenter that the sensor does not have; a location that cannot be pressed.
     pub fn predict(&self, press: &Press) -> Result<Prediction, Error> {
         let rate_hz = self.sensor.file().sensor.readout.rate_hz;
         let bench = &self.model.record.bench;
@@ -67,11 +68,13 @@ impl Twin {
         Ok(digitac::predict(twin, bench, &self.gel, plans, rate_hz)?.swap_remove(0))
     }
 
-    /// What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included. `progress` hears of each frame, and can stop it.
-    /// [`Predicted::failure`] says why a path ends before it should. Points of the path are not read.
+    /// Predicts the readings along a path: the gel is solved frame by frame, sliding and tilting
+    /// included. `progress` is told of each frame, and can stop the work. If a path ends early,
+    /// [`Predicted::failure`] says why. Points of the path are not read.
     ///
     /// # Errors
-    /// An indenter that the sensor does not have; a path that misses the gel; work that was stopped.
+    /// An indenter that the sensor does not have; a path that misses the gel; work that was
+    /// stopped.
     #[cfg(feature = "run")]
     pub fn predict_along(
         &self,
@@ -82,8 +85,8 @@ impl Twin {
         Ok(predictor.along(path.clone(), progress)?)
     }
 
-    /// The twin at the place of a press and down to its depth, to be stepped with depths or poses as they come. Takes a second; a step then
-    /// takes a microsecond.
+    /// The twin at the location of a press and down to its depth, to be stepped with depths or
+    /// poses as they come. The call takes about a second; a step then takes about a microsecond.
     ///
     /// # Errors
     /// As [`predict`](Self::predict).
@@ -93,11 +96,11 @@ impl Twin {
         Ok(digitac::at_place(twin, bench, &self.gel, &press.plan)?)
     }
 
-    /// So many sensors with this twin's gains and memory, over a fast gel of the same sensor, to be
-    /// stepped with what touches them.
+    /// A batch of sensors with this twin's gains and relaxation, over a surrogate of the same
+    /// sensor's gel. It is stepped with the bodies that touch each sensor.
     ///
     /// # Errors
-    /// The fast gel of another gel, or of ports elsewhere.
+    /// A surrogate of another gel, or of other port positions.
     #[cfg(feature = "sensors")]
     pub fn sensors(
         &self,
@@ -117,8 +120,8 @@ impl Twin {
         ))
     }
 
-    /// Twins of so many sensors, to be stepped together with pressures at their ports, for programs that solve the gel themselves: one sensor,
-    /// or thousands.
+    /// Twins of `n_sensors` sensors, stepped together with pressures at their ports: for programs
+    /// that solve the gel themselves, with one sensor or thousands.
     #[must_use]
     pub fn states(&self, n_sensors: usize) -> TwinState {
         self.model.twin.states(n_sensors)

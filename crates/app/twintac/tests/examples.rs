@@ -1,4 +1,4 @@
-//! The examples run, and end well.
+//! Runs the examples.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 #![allow(dead_code, unreachable_pub)] // each example has a `main` of its own

@@ -11,7 +11,9 @@ def text(values):
 
 
 def model(run, nodes, tets):
-    """Every vertex free, or with `cellcount` the vertices carried by a coarse grid of hexahedra."""
+    """The compiled model. Every vertex is free, or, with `cellcount`, a coarse grid of hexahedra
+    carries the vertices.
+    """
     interpolated = "cellcount" in run
     if interpolated:
         order = 2 if run["dof"] == "quadratic" else 1

@@ -1,4 +1,6 @@
-"""What every engine is asked: a ball pressed into a bonded block. Units here: mm, g, s, hence Pa and µN."""
+"""The task of all engines: a ball is pressed into a block that is bonded to its base. Units here
+are mm, g and s, and therefore Pa and µN.
+"""
 
 import json
 import math
@@ -19,12 +21,14 @@ READ_AT_MM = (0.5, 1.0, 2.0)
 
 
 def settings():
-    """The run's settings: one JSON object, the only argument."""
+    """The settings of the run: one JSON object, the only argument."""
     return json.loads(sys.argv[1])
 
 
 def regular_mesh(cells):
-    """Nodes, mm, and tetrahedra of a block cut into cells, each into five tetrahedra, mirrored from cell to cell."""
+    """Nodes, mm, and tetrahedra of a block that is divided into cells, each into five tetrahedra,
+    mirrored from cell to cell.
+    """
     nx, ny, nz = cells
     x, y, z = (np.linspace(0.0, size, n + 1) for size, n in zip(SIZE_MM, cells))
     grid = np.meshgrid(x - SIZE_MM[0] / 2, y - SIZE_MM[1] / 2, z, indexing="ij")
@@ -43,7 +47,7 @@ def regular_mesh(cells):
 
 
 def right_handed(nodes, tets):
-    """The same tetrahedra with positive volumes."""
+    """The same tetrahedra, reordered so that all volumes are positive."""
     a, b, c, d = (nodes[tets[:, i]] for i in range(4))
     wrong = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
     tets = tets.copy()
@@ -52,7 +56,7 @@ def right_handed(nodes, tets):
 
 
 def mesh(run):
-    """The mesh that a run asks for: cells of a regular one, or a file."""
+    """The mesh of a run: a regular one with the run's cells, or one from a file."""
     if "cells" in run:
         return regular_mesh(run["cells"])
     with open(run["mesh_file"]) as file:
@@ -62,20 +66,22 @@ def mesh(run):
 
 
 def bonded(nodes):
-    """Which nodes sit on the bottom."""
+    """Indices of the nodes at the bottom."""
     return np.flatnonzero(nodes[:, 2] < 1e-6)
 
 
 def lame_pa(nu):
-    """Lamé's μ and λ."""
+    """Lamé's constants μ and λ, Pa."""
     return YOUNGS_MODULUS_PA / (2 * (1 + nu)), YOUNGS_MODULUS_PA * nu / ((1 + nu) * (1 - 2 * nu))
 
 
 def follow(run, n_nodes, n_tets, step):
-    """Presses with `step(centre_height_mm)`, which returns the force in µN; prints a row of results.
+    """Presses with `step(centre_height_mm)`, which returns the force in µN, and prints a row of
+    results.
 
-    Ends early when the run's processor time is spent (a busy machine shall not cut presses shorter). The first step
-    may compile: it is taken with the ball a little above the gel, before the clock starts.
+    Ends early when the run's processor time is spent; other load on the machine does not shorten
+    presses. The first step may include a compilation: it is made with the ball slightly above the
+    gel, before the measurement starts.
     """
     dt, limit_s = run["time_step_s"], run["limit_s"]
     touch_mm = SIZE_MM[2] + RADIUS_MM
@@ -110,7 +116,7 @@ def follow(run, n_nodes, n_tets, step):
 
 
 def process_started():
-    """When this process began, s since the epoch."""
+    """Start time of this process, s since the epoch."""
     ticks = float(open("/proc/self/stat").read().rsplit(")", 1)[1].split()[19])
     uptime_s = float(open("/proc/uptime").read().split()[0])
     return time.time() - uptime_s + ticks / os.sysconf("SC_CLK_TCK")

@@ -1,4 +1,4 @@
-//! How fast presses are followed.
+//! Benchmark of the soft body: how fast presses are followed, and with what error.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -14,62 +14,64 @@ use crate::cases::{self, Case};
 /// Tolerance of the solver in real time.
 pub(crate) const FAST: f64 = 2e-3;
 
-/// Tolerance of what it is compared to.
+/// Tolerance of the reference solution.
 const TIGHT: f64 = 1e-7;
 
-/// Parts of the largest force, and of the largest pressure at any taxel, below which errors are relative to that part.
+/// Fractions of the largest force, and of the largest pressure at any taxel. Errors of smaller
+/// values are relative to this fraction.
 const SMALLEST_FORCE: f64 = 0.01;
 const SMALLEST_PRESSURE: f64 = 0.05;
 
-/// A frame's time at 55 Hz, ms.
+/// Duration of a frame at 55 Hz, ms.
 const BUDGET_MS: f64 = 1000.0 / 55.0;
 
-/// Wall time within which frames are answered where they have a deadline: what is left of a frame's time is for reading the ports.
+/// Deadline of a frame in wall time. The rest of a frame's duration is for reading the ports.
 const DEADLINE: Duration = Duration::from_millis(15);
 
-/// Part of the way down over which other ways to solve are compared.
+/// Fraction of the way down over which the linear solvers are compared.
 const COMPARED: f64 = 0.25;
 
-/// What came of a case.
+/// The result of a case.
 #[derive(Serialize)]
 struct Timed {
     case: &'static str,
     nodes: usize,
     tets: usize,
     nu: f64,
-    /// Simulated over wall time.
+    /// Real-time factor: simulated time divided by wall time.
     rtf: f64,
     /// Force, N, at depths, mm.
     force_n: BTreeMap<String, f64>,
     mean_ms: f64,
     worst_ms: f64,
-    /// Part of the frames within the time that a frame lasts.
+    /// Fraction of the frames that were solved within a frame's duration.
     in_time: f64,
-    /// Time of a frame with factors of the whole system made anew for every direction, on one thread, as part of ours: both in this run, on the way
-    /// down as far as [`COMPARED`] of it.
+    /// Time of a frame with [`LinearSolver::Direct`], which factorises the whole system for every
+    /// direction on one thread, divided by the time of this project's solver. Both are measured in
+    /// this run, over the first [`COMPARED`] of the way down.
     times_of_direct: f64,
-    /// Largest error against the tight solution of the same mesh, %.
+    /// Largest error against the reference solution on the same mesh, %.
     force_error_percent: f64,
     pressure_error_percent: f64,
-    /// The same with a deadline for each frame.
+    /// The results with a deadline for each frame.
     within_deadline: Within,
 }
 
-/// A case whose frames have a deadline.
+/// The results of a case whose frames have a deadline.
 #[derive(Serialize)]
 struct Within {
     deadline_ms: f64,
     worst_ms: f64,
     in_time: f64,
-    /// Part of the frames that settled before the deadline.
+    /// Fraction of the frames that converged before the deadline.
     settled: f64,
     force_error_percent: f64,
     pressure_error_percent: f64,
-    /// Largest part of the load that is unbalanced, %.
+    /// Largest residual: unbalanced forces, % of the load.
     residual_percent: f64,
 }
 
-/// Times all cases and prints what came of them.
+/// Times all cases and prints the results.
 pub(crate) fn run(as_json: bool) -> Result<()> {
     let mut out = std::io::stdout().lock();
     if !as_json {
@@ -189,13 +191,13 @@ fn worst(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-/// Part of the frames within the time that a frame lasts.
+/// Fraction of the frames that were solved within a frame's duration.
 fn part_in_time(times_ms: &[f64]) -> f64 {
     let in_time = times_ms.iter().filter(|time| **time <= BUDGET_MS).count();
     in_time as f64 / times_ms.len() as f64
 }
 
-/// Largest errors of force and pressure against the tight solution, %.
+/// Largest errors of force and pressure against the reference solution, %.
 fn errors_percent(fast: &Followed, tight: &Followed) -> [f64; 2] {
     let force = |followed: &Followed, frame: usize| vec![followed.frames[frame].force_n.length()];
     let pressures = |followed: &Followed, frame: usize| -> Vec<f64> {
@@ -207,7 +209,8 @@ fn errors_percent(fast: &Followed, tight: &Followed) -> [f64; 2] {
     ]
 }
 
-/// Largest relative error of values in all frames, of small ones relative to a part of the largest.
+/// Largest relative error over all frames. Errors of small values are relative to a fraction of the
+/// largest value.
 fn largest_error(
     fast: &Followed,
     tight: &Followed,
@@ -225,7 +228,7 @@ fn largest_error(
         .fold(0.0, largest)
 }
 
-/// Forces at 0.5, 1 and 2 mm on the way down, linear between frames.
+/// Forces at 0.5, 1 and 2 mm on the way down, interpolated linearly between frames.
 pub(crate) fn forces(followed: &Followed) -> BTreeMap<String, f64> {
     let start_mm = followed.frames[0].position_mm.z;
     let depth_mm = |frame: usize| start_mm - followed.frames[frame].position_mm.z;

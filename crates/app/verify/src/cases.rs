@@ -1,4 +1,4 @@
-//! The presses that are timed.
+//! The presses of the benchmarks.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,23 +12,23 @@ use twintac_shape::Shape;
 use twintac_simulate::{Followed, Gel, SimulateSettings};
 use twintac_softbody::LinearSolver;
 
-/// Frames in a second: the rate of the paper's sensor, Hz.
+/// Frame rate of the paper's sensor, Hz.
 const RATE_HZ: f64 = 55.0;
 
-/// What presses: round, 25 mm across.
+/// The indenter: a ball of 25 mm diameter.
 const BALL: Shape = Shape::Sphere { radius_mm: 12.5 };
 
 /// A press with its mesh.
 pub(crate) struct Case {
-    /// What it is called in tables.
+    /// Its name in tables.
     pub(crate) name: &'static str,
     /// Poisson's ratio.
     pub(crate) poissons_ratio: f64,
-    /// Fewest and most nodes that it is to have.
+    /// Smallest and largest accepted number of nodes.
     pub(crate) n_nodes: [usize; 2],
     sensor: Arc<Sensor>,
     path: PressPath,
-    /// Edges over the gel's height and the contact's radius, where they decide the mesh.
+    /// Edges over the gel's height and over the contact's radius, if these determine the mesh.
     edges: Option<f64>,
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn block(poissons_ratio: f64) -> Result<Case> {
     })
 }
 
-/// A ball pressed 1 mm into a block as finely meshed as is asked for.
+/// A ball pressed 1 mm into a block whose mesh has this many edges over its height.
 pub(crate) fn block_of(edges_per_height: f64) -> Result<Case> {
     Ok(Case {
         n_nodes: [0, usize::MAX],
@@ -133,7 +133,7 @@ pub(crate) fn all() -> Result<Vec<Case>> {
 }
 
 impl Case {
-    /// The way down, as far as a part of it.
+    /// The first part of the way down.
     pub(crate) fn shortened(&self, part: f64) -> Self {
         let mut path = self.path.clone();
         path.poses.truncate(2);
@@ -163,7 +163,7 @@ impl Case {
         Gel::new(self.sensor.clone(), settings)
     }
 
-    /// The mesh, as JSON: `nodes_mm` and `tets`.
+    /// The mesh as JSON: `nodes_mm` and `tets`.
     pub(crate) fn mesh_json(&self) -> Result<String> {
         let gel = self
             .gel(1.0, LinearSolver::TwoLevel)
@@ -173,12 +173,12 @@ impl Case {
         Ok(serde_json::json!({ "nodes_mm": nodes_mm, "tets": mesh.tets }).to_string())
     }
 
-    /// Follows the press with a solver tolerance, and says so after each frame.
+    /// Follows the press with a solver tolerance. `advanced` is called after each frame.
     pub(crate) fn follow(&self, tolerance: f64, advanced: &mut dyn FnMut()) -> Result<Followed> {
         self.follow_by(LinearSolver::TwoLevel, tolerance, advanced)
     }
 
-    /// The same, each frame answered within a wall time.
+    /// The same with a limit of the wall time of each frame.
     pub(crate) fn follow_within(&self, deadline: Duration, tolerance: f64) -> Result<Followed> {
         let gel = self
             .gel(tolerance, LinearSolver::TwoLevel)
@@ -186,7 +186,7 @@ impl Case {
         self.follow_on(&gel, &mut || ())
     }
 
-    /// The same, with a choice of how linear systems are solved.
+    /// The same with a choice of the linear solver.
     pub(crate) fn follow_by(
         &self,
         linear: LinearSolver,

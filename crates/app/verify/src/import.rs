@@ -1,4 +1,4 @@
-//! How long a large CSV log takes to import, and how much memory: `cargo xtask bench import`.
+//! Time and memory of importing a large CSV log: `cargo xtask bench import`.
 
 use std::fmt::Write as _;
 use std::io::{BufWriter, Write};
@@ -15,24 +15,25 @@ use crate::files;
 /// Rows of the log.
 const ROWS: u32 = 2_000_000;
 
-/// Rows of a press, down and up, and at rest after it.
+/// Rows of one press: down, up, and at rest after it.
 const PRESS: u32 = 500;
 
 const TAXELS: usize = 8;
 
-/// What an import took.
+/// The result of an import.
 #[derive(Serialize, Deserialize)]
 struct Imported {
     rows: usize,
     frames: usize,
     presses: usize,
     wall_s: f64,
-    /// Of the file's cells, split at commas and parsed as numbers, one after the other, in the same process.
+    /// Time to split the file's cells at commas and to parse them as numbers, in the same process
+    /// and on one thread, s.
     reference_s: f64,
     peak_mib: f64,
 }
 
-/// Writes a log, imports it in a process of its own, and says what that took.
+/// Writes a log, imports it in a process of its own, and prints the result.
 pub(crate) fn run(as_json: bool) -> Result<()> {
     let folder = tempfile::tempdir()?;
     let log = folder.path().join("log.csv");
@@ -66,7 +67,7 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
     Ok(())
 }
 
-/// Imports a log that [`run`] wrote, and prints what that took as one JSON line.
+/// Imports a log that [`run`] wrote, and prints the result as one JSON line.
 pub(crate) fn print_imported(log: &Path) -> Result<()> {
     let import = Import::parse("log", &description())?;
     let started = Instant::now();
@@ -112,7 +113,7 @@ fn write_log(log: &PathBuf) -> Result<()> {
     let mut line = String::new();
     for row in 0..ROWS {
         let place = row % PRESS;
-        // Down to -2 mm and up to 3 mm again within the first 400 rows, then at rest.
+        // Down to -2 mm and up to 3 mm within the first 400 rows, then at rest.
         let z_mm = (f64::from(place.min(400)) / 200.0 - 1.0).abs() * 5.0 - 2.0;
         let force_n = (-z_mm).max(0.0).powf(1.5);
         line.clear();

@@ -1,4 +1,27 @@
-//! What `cargo xtask bench` and `cargo xtask verify` run.
+//! Benchmarks and verification of the soft body and of the emulated bench. `cargo xtask bench` and
+//! `cargo xtask verify` run this program.
+//!
+//! # How it works
+//!
+//! ```text
+//! ladder/     the verification tests ("rungs"): closed forms, convergence, balance, robustness; a
+//!             page and a record each in docs/verification
+//! calculix/   the same presses in CalculiX, an independent finite-element program, whose results
+//!             are kept in references/
+//! rung/       a test's outcome: numbers (mm, N, kPa, %) with limits, and plots
+//! cases, bench      presses at 55 Hz: real-time factor, and errors against a tightly converged
+//!                   solution
+//! scaling     time and memory over the size of the mesh
+//! peers/      the same press in MuJoCo and Newton, by the Python scripts in peers/
+//! recording/  recordings on the emulated bench: frame rate, twenty faults, random kills
+//! import, serial    import of a large CSV log; frames over a serial line
+//! ```
+//!
+//! Each benchmark prints a table, or writes a page and a JSON file to `docs/benchmarks`. A
+//! verification test fails if a number exceeds its limit; the exit code is then 1. All numbers are
+//! `simulated` or `emulated`.
+//!
+//! The program does not depend on learning.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -27,40 +50,45 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// How fast presses are followed, and how far the fast answers are from the same mesh solved tightly
+    /// Measure how fast presses are followed, and the error against a tightly converged solution on
+    /// the same mesh
     Softbody {
-        /// Print one JSON line a case instead of a table
+        /// Print one JSON line for each case instead of a table
         #[arg(long)]
         json: bool,
     },
-    /// How time and memory grow with the mesh: writes docs/benchmarks/scaling.*
+    /// Measure time and memory over the size of the mesh; writes docs/benchmarks/scaling.*
     Scaling,
-    /// One mesh of the above: one JSON line
+    /// Measure one mesh of `scaling`, and print one JSON line
     Size {
         /// Edges over the block's height
         edges_per_height: f64,
     },
-    /// The verification ladder: closed forms, convergence, balance and robustness, each with a stated limit
+    /// Run the verification tests: closed forms, convergence, balance and robustness, each with a
+    /// stated limit
     Ladder(ladder::Options),
-    /// The block press on other engines and on ours: makes a Python environment, writes docs/benchmarks/peers.*
+    /// Run the block press on other engines and on this project's; makes a Python environment,
+    /// writes docs/benchmarks/peers.*
     Peers(peers::Options),
-    /// Recording on the emulated bench, with faults and kills: writes docs/benchmarks/recording.*
+    /// Record on the emulated bench, with faults and kills; writes docs/benchmarks/recording.*
     Recording(recording::Options),
-    /// How long a CSV log of two million rows takes to import, and how much memory
+    /// Measure time and memory of importing a CSV log of two million rows
     Import {
         /// Print one JSON line
         #[arg(long)]
         json: bool,
     },
-    /// A thousand frames of sixteen taxels a second over a serial line: writes docs/benchmarks/serial.*
+    /// Read a thousand frames of sixteen taxels a second over a serial line; writes
+    /// docs/benchmarks/serial.*
     #[cfg(unix)]
     Serial(serial::Options),
-    /// Such a log: one JSON line
+    /// Import such a log, and print one JSON line
     ReadLog {
         /// The log
         log: PathBuf,
     },
-    /// The block press on our engine alone: one JSON line with rate, forces and memory
+    /// Run the block press on this project's engine alone, and print one JSON line with rate,
+    /// forces and memory
     Press {
         /// Poisson's ratio of the block
         #[arg(long)]

@@ -1,4 +1,4 @@
-//! How time and memory grow with the mesh: `cargo xtask bench scaling`.
+//! Time and memory over the size of the mesh: `cargo xtask bench scaling`.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 use crate::rung::plots;
 use crate::{bench, cases, files};
 
-/// Where the results go.
+/// Folder of the results.
 const RESULTS: &str = "docs/benchmarks";
 
-/// Edges over the block's height that are asked for: about 1,000 to 300,000 tetrahedra.
+/// Requested edges over the block's height: about 1,000 to 300,000 tetrahedra.
 const EDGES_PER_HEIGHT: [f64; 7] = [0.9, 1.4, 2.0, 3.0, 4.5, 6.5, 8.5];
 
-/// What a press of one mesh took.
+/// The cost of a press on one mesh.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Size {
     nodes: usize,
@@ -27,7 +27,7 @@ pub(crate) struct Size {
     mean_ms: f64,
     newton_iterations_per_frame: f64,
     factorisations: u32,
-    /// Most memory of the whole process.
+    /// Peak memory of the whole process, MiB.
     peak_mib: f64,
 }
 
@@ -35,16 +35,17 @@ pub(crate) struct Size {
 #[derive(Serialize)]
 struct Scaling {
     command: &'static str,
-    /// Power of the number of tetrahedra by which a frame's time grows, fitted to all sizes.
+    /// Exponent of the number of tetrahedra in a frame's time, fitted to all sizes.
     time_power: f64,
-    /// The same of an iteration of Newton's method.
+    /// The same for the time of a Newton iteration.
     iteration_power: f64,
-    /// Memory over tetrahedra, between the smallest and the largest mesh.
+    /// Difference of memory divided by the difference of tetrahedra, of the smallest and the
+    /// largest mesh.
     bytes_per_tet: f64,
     sizes: Vec<Size>,
 }
 
-/// Presses one mesh and prints what it took as one JSON line.
+/// Presses one mesh, and prints the cost as one JSON line.
 pub(crate) fn print_size(edges_per_height: f64) -> Result<()> {
     let followed = cases::block_of(edges_per_height)?.follow(bench::FAST, &mut || ())?;
     let frames = &followed.frames[1..];
@@ -128,10 +129,10 @@ fn power(sizes: &[Size], of: &dyn Fn(&Size) -> f64) -> f64 {
 fn page(scaling: &Scaling) -> Result<String> {
     let mut text = format!(
         "# Time and memory over the size of the mesh\n\nMade by `{}`.\n\n\
-         A ball of 25 mm is pressed 1 mm deep into a bonded block, 30 × 20 × 8 mm, ν = 0.49, in frames of 55 Hz, on two threads. Each mesh is \
-         pressed by a process of its own, whose peak memory is stated.\n\n\
-         A frame's time grows with the number of tetrahedra to the power of **{:.2}**, that of an iteration of Newton's \
-         method, of which a finer mesh needs more, of **{:.2}**; memory by **{:.0} bytes** a tetrahedron.\n\n\
+         A ball with a diameter of 25 mm is pressed 1 mm deep into a bonded block, 30 × 20 × 8 mm, ν = 0.49, in frames of 55 Hz, on two threads. Each mesh \
+         is pressed by its own process, whose peak memory is given.\n\n\
+         The time of a frame grows with the number of tetrahedra to the power of **{:.2}**. The time of an iteration of Newton's \
+         method grows to the power of **{:.2}**; a finer mesh needs more iterations. Memory grows by **{:.0} bytes** per tetrahedron.\n\n\
          | tetrahedra | nodes | ms a frame | Newton iterations a frame | factorisations | peak memory, MiB |\n|---:|---:|---:|---:|---:|---:|\n",
         scaling.command, scaling.time_power, scaling.iteration_power, scaling.bytes_per_tet
     );

@@ -1,4 +1,5 @@
-//! A thousand frames of sixteen taxels a second over a serial line, a pseudo-terminal here, for minutes: `cargo xtask bench serial`.
+//! Frames over a serial line for minutes, a thousand of sixteen taxels a second, through a
+//! pseudo-terminal: `cargo xtask bench serial`.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -14,23 +15,23 @@ use twintac_source::{FrameSource, LineSource, SerialLine, SourceError};
 
 use crate::files::write_whole;
 
-/// Where the results go.
+/// Folder of the results.
 const RESULTS: &str = "docs/benchmarks";
 const TAXELS: usize = 16;
 const RATE_HZ: f64 = 1000.0;
-/// The line has whole Pa; what is read of them may differ by rounding, and by no more.
+/// Tolerance of a pressure, Pa. The line carries whole Pa; only rounding is accepted.
 const LAST_DIGIT_PA: f64 = 1e-6;
-/// A frame that is later than this counts as late.
+/// A frame counts as late beyond this delay, s.
 const LATE_S: f64 = 0.02;
 
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// For how long, s
+    /// Duration, s
     #[arg(long, default_value_t = 600)]
     seconds: u64,
 }
 
-/// What became of the frames.
+/// The results.
 #[derive(Serialize, Deserialize)]
 struct Results {
     command: String,
@@ -40,13 +41,13 @@ struct Results {
     seconds: f64,
     sent: u64,
     heard: u64,
-    /// Frames that the line says are missing.
+    /// Missing frames that the reader marked.
     lost_marked: u64,
-    /// Frames that are missing, and nothing says so.
+    /// Missing frames without a mark.
     lost_unmarked: u64,
-    /// Frames whose numbers are not those that were sent.
+    /// Frames with other values than were sent.
     wrong: u64,
-    /// How much later frames were handed out than the quickest, ms.
+    /// Delay of frames relative to the quickest frame, ms.
     latency_median_ms: f64,
     latency_99_ms: f64,
     latency_worst_ms: f64,
@@ -98,7 +99,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             eprintln!("{said} min: {heard} frames");
         }
     }
-    // Numbers of frames go on over those that are missing.
+    // Numbers of frames count missing frames too.
     let lost_marked = n_numbered - heard;
     drop(writer.join().map_err(|_| anyhow!("the board's thread died"))??);
     drop(computer);
@@ -136,17 +137,17 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     write_whole(&folder.join("serial.md"), page(&results).as_bytes())
 }
 
-/// A pressure that no other frame has in this place, Pa.
+/// The pressure of a taxel in a frame, Pa; it differs from frame to frame.
 fn pressure_pa(frame: u64, taxel: usize) -> u32 {
     100_000 + (frame * 31 + taxel as u64 * 7) as u32 % 50_000
 }
 
-/// What the board writes of a frame.
+/// The line that the board writes for a frame.
 fn sent(frame: u64, now_us: u64) -> String {
     let pressures: Vec<String> = (0..TAXELS)
         .map(|taxel| pressure_pa(frame, taxel).to_string())
         .collect();
-    // As a counter of 32 bits, which rolls over within the hour.
+    // A 32-bit counter that overflows within the hour.
     let body = format!(
         "{frame},{},{}",
         (now_us + 4_290_000_000) as u32,
@@ -173,7 +174,7 @@ fn page(results: &Results) -> String {
     } = results;
     format!(
         "# Frames over a serial line\n\nWritten by `{command}`: {rate_hz} frames of {taxels} taxels a second for {seconds} s, as lines with a number, a 32-bit clock that rolls over and a checksum, through a \
-         pseudo-terminal. Emulated.\n\n| | |\n|---|---|\n| sent | {sent} |\n| heard | {heard} |\n| missing and marked | {lost_marked} |\n| missing and not marked | {lost_unmarked} |\n| wrong | {wrong} |\n| handed \
-         out later than the quickest, median | {latency_median_ms:.2} ms |\n| 99 of 100 | {latency_99_ms:.2} ms |\n| worst | {latency_worst_ms:.1} ms |\n"
+         pseudo-terminal. Emulated.\n\n| | |\n|---|---|\n| sent | {sent} |\n| received | {heard} |\n| missing and marked | {lost_marked} |\n| missing and not marked | {lost_unmarked} |\n| wrong | {wrong} |\n| delay \
+         relative to the fastest frame, median | {latency_median_ms:.2} ms |\n| 99th percentile | {latency_99_ms:.2} ms |\n| largest | {latency_worst_ms:.1} ms |\n"
     )
 }

@@ -1,15 +1,17 @@
-//! A sensor on the desk, for all clients.
+//! A connected sensor, shared by all clients.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
-/// Frames that are kept for clients that ask now and then.
+/// Number of latest frames that are kept for clients that ask rarely.
 const KEPT: usize = 256;
 
-/// First frames that each client is given first, whenever it comes: those of a sensor that nothing touches yet.
+/// Number of first frames that each client gets, whenever it connects: they show the untouched
+/// sensor.
 const FIRST: usize = 32;
 
-/// A sensor on the desk: what reads it hands its frames over, and each client gets those that it does not have yet.
+/// A connected sensor. Its reader hands frames over, and each client gets the frames that it does
+/// not have yet.
 #[derive(Debug)]
 pub struct Desk {
     source: String,
@@ -20,7 +22,7 @@ pub struct Desk {
 #[derive(Debug, Default)]
 struct Heard {
     first: Vec<Vec<Option<f64>>>,
-    /// Frames before those that are kept.
+    /// Number of frames that are no longer kept.
     n_gone: u64,
     /// Absolute pressures of the taxels, kPa.
     frames: VecDeque<Vec<Option<f64>>>,
@@ -28,7 +30,8 @@ struct Heard {
 }
 
 impl Desk {
-    /// A sensor whose frames come from `source`, which people are told; `provenance` is `real` or `emulated`.
+    /// A sensor whose frames come from `source`, a text for people; `provenance` is `real` or
+    /// `emulated`.
     #[must_use]
     pub fn new(source: &str, provenance: &str) -> Self {
         Self {
@@ -38,7 +41,8 @@ impl Desk {
         }
     }
 
-    /// Hands a frame over: absolute pressures of the taxels, kPa; `None` of one without a reading.
+    /// Hands over a frame: absolute pressures of the taxels, kPa; `None` for a taxel without a
+    /// reading.
     pub fn push(&self, pressures_kpa: Vec<Option<f64>>) {
         let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
         if heard.first.len() < FIRST {
@@ -51,7 +55,7 @@ impl Desk {
         heard.frames.push_back(pressures_kpa);
     }
 
-    /// Says what is odd so far, a sentence each.
+    /// Sets the remarks about the frames so far, one sentence each.
     pub fn set_remarks(&self, remarks: Vec<String>) {
         self.heard.lock().unwrap_or_else(PoisonError::into_inner).remarks = remarks;
     }
@@ -64,11 +68,12 @@ impl Desk {
         &self.provenance
     }
 
-    /// The frames after the first `n_seen` that are still kept, and what is odd; `n_seen` counts them. Of the first frames, none is missed.
+    /// The kept frames after number `n_seen`, and the remarks; `n_seen` is updated. The first
+    /// frames are always included.
     pub(crate) fn since(&self, n_seen: &mut u64) -> (Vec<Vec<Option<f64>>>, Vec<String>) {
         let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
         let n_skipped = n_seen.saturating_sub(heard.n_gone) as usize;
-        // Those of the first that are still kept among the others come with these.
+        // First frames that are also among the latest ones come with those.
         let n_first = heard.first.len().min(heard.n_gone as usize);
         let first = heard.first[..n_first].iter().skip(*n_seen as usize);
         *n_seen = heard.n_gone + heard.frames.len() as u64;

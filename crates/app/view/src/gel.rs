@@ -8,10 +8,11 @@ use twintac_engine::{Array, Engine, Offer};
 use crate::desk::Desk;
 use crate::session::Session;
 
-/// A gel that is pressed by requests of a client's own.
+/// A session in which a client presses a gel of its own.
 ///
-/// A request is the length of its JSON text (4 bytes, the lowest first), that text, and the bytes of a file that it keeps, or of a line. An answer is the length of its
-/// JSON text, that text, and each array that has changed: its number, how many entries it has, and these, 4 bytes each.
+/// A request is the length of its JSON text (4 bytes, little-endian), that text, and the bytes of a
+/// file to store or of a line. An answer is the length of its JSON text, that text, and each array
+/// that has changed: its number, its number of entries, and the entries, 4 bytes each.
 #[derive(Default)]
 pub struct GelSession {
     engine: Engine,
@@ -19,19 +20,19 @@ pub struct GelSession {
     n_seen: u64,
 }
 
-/// The description that a gel begins with.
+/// The description that a session opens first.
 #[derive(Clone, Debug)]
 pub struct Begin {
     /// The name of its file.
     pub file: String,
     /// Its text.
     pub text: String,
-    /// The files of surfaces, by the names that the text has for them.
+    /// The surface files, by their names in the text.
     pub surfaces: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl GelSession {
-    /// A gel that begins with a description, if one was chosen, beside a sensor on the desk, if there is one.
+    /// A session with a first description and a connected sensor, if there are any.
     #[must_use]
     pub fn beside(desk: Option<Arc<Desk>>, begin: Option<&Begin>) -> Self {
         let mut session = Self::default();
@@ -54,7 +55,7 @@ impl Session for GelSession {
             self.engine.set_remarks(remarks);
         }
         let Some((request, bytes)) = split(message) else {
-            return with_length(r#"{"error": "this is no request: it is shorter than it says"}"#);
+            return with_length(r#"{"error": "this is not a request: it is shorter than it says"}"#);
         };
         let text = String::from_utf8_lossy(request);
         let mut answer = with_length(&self.engine.answer(&text, bytes));
@@ -91,7 +92,7 @@ mod tests {
 
     use super::*;
 
-    /// The answer to a request, and the numbers and lengths of the arrays beside it.
+    /// The answer to a request, and the numbers and lengths of its arrays.
     fn ask(gel: &mut GelSession, request: &Value) -> (Value, Vec<(u32, u32)>) {
         let answer = gel.answer(&with_length(&request.to_string()));
         let (text, mut rest) = split(&answer).unwrap();

@@ -1,13 +1,13 @@
-//! Who is let in.
+//! Access control.
 
 use std::net::{IpAddr, SocketAddr};
 
 use crate::head::Head;
 
-/// What a request has to have.
+/// The conditions that a request has to meet.
 #[derive(Clone, Debug)]
 pub(crate) struct Guard {
-    /// Where is listened.
+    /// The address that the server listens on.
     pub(crate) address: SocketAddr,
     pub(crate) token: String,
 }
@@ -15,22 +15,22 @@ pub(crate) struct Guard {
 /// Why a request is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Refusal {
-    #[error("this address is not the one that is listened on")]
+    #[error("the request is for another address")]
     Host,
-    #[error("another page asks")]
+    #[error("the request comes from another page")]
     Origin,
     #[error("the token is missing or wrong: open the address that `twintac view` printed")]
     Token,
 }
 
 impl Guard {
-    /// Lets a request in, or says why not.
+    /// Accepts a request, or says why it is refused.
     pub(crate) fn check(&self, head: &Head) -> Result<(), Refusal> {
         let host = head.host.as_deref().unwrap_or_default();
         if !self.is_here(host) {
             return Err(Refusal::Host);
         }
-        // Browsers say where a page comes from that opens a WebSocket; programs that are no browsers do not.
+        // Browsers send the origin of the page that opens a WebSocket; other programs do not.
         if head
             .origin
             .as_deref()
@@ -44,7 +44,8 @@ impl Guard {
         Ok(())
     }
 
-    /// Whether a host with its port is this program: an address, as names can be made to point anywhere.
+    /// Whether a host with its port means this server. Only addresses and `localhost` are accepted,
+    /// because any other name could be made to point here.
     fn is_here(&self, host: &str) -> bool {
         let Some((name, port)) = host.rsplit_once(':') else {
             return false;
@@ -66,7 +67,7 @@ impl Guard {
     }
 }
 
-/// Whether two texts are the same, in a time that does not tell how much of them is.
+/// Whether two texts are equal, in a time that does not depend on how many characters agree.
 fn is_same(a: &str, b: &str) -> bool {
     let differing = a.bytes().zip(b.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
     a.len() == b.len() && differing == 0

@@ -2,12 +2,12 @@
 
 use std::io::{self, Read};
 
-/// A head that is longer is refused, bytes.
+/// Longest head that is accepted, bytes.
 const LONGEST: usize = 16 * 1024;
-/// Headers that are read, at most.
+/// Most headers that are accepted.
 const MOST_HEADERS: usize = 64;
 
-/// What is asked for, and by whom.
+/// The parts of a request's head that the server uses.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Head {
     pub(crate) method: String,
@@ -17,12 +17,13 @@ pub(crate) struct Head {
     pub(crate) token: Option<String>,
     pub(crate) host: Option<String>,
     pub(crate) origin: Option<String>,
-    /// The key of a client that wants a WebSocket.
+    /// The key of a client that asks for a WebSocket.
     pub(crate) socket_key: Option<String>,
 }
 
 impl Head {
-    /// Reads a head up to its empty line. Nothing may follow it: who asks waits for the answer.
+    /// Reads a head up to its empty line. Bytes after it are an error: a client has to wait for the
+    /// answer.
     pub(crate) fn read(stream: &mut impl Read) -> io::Result<Self> {
         let mut bytes = Vec::new();
         let mut part = [0; 2048];
@@ -40,7 +41,7 @@ impl Head {
         }
     }
 
-    /// A whole head; `None` where more of it has to come.
+    /// Parses a head; `None` if it is not complete yet.
     pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Self>> {
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
         let mut request = httparse::Request::new(&mut headers);

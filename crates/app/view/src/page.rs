@@ -1,6 +1,7 @@
-//! The page.
+//! The embedded page.
 
-/// The page that this library was built with: the file that `TWINTAC_PAGE` named then, if it named one.
+/// The page that this library was built with: the file that the environment variable `TWINTAC_PAGE`
+/// named at build time, if it was set.
 pub const PAGE: Option<&[u8]> = page();
 
 #[cfg(has_page)]

@@ -1,14 +1,14 @@
-//! A stream that is read until a deadline, or until the program is stopped.
+//! A stream with a deadline that also ends when the program is stopped.
 
 use std::io::{self, Read};
 use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long is waited for bytes before it is looked whether to go on.
+/// How long a read waits for bytes before it checks the deadline.
 pub(crate) const LOOK: Duration = Duration::from_millis(100);
 
-/// A stream that is read until a deadline, or until the program is stopped.
+/// A stream with a deadline that also ends when the program is stopped.
 pub(crate) struct Patient<'a> {
     pub(crate) stream: &'a TcpStream,
     pub(crate) until: Instant,
@@ -30,7 +30,7 @@ impl Read for Patient<'_> {
     }
 }
 
-/// Whether nothing came in time, and something may come later.
+/// Whether a read ended without bytes, and bytes may come later.
 pub(crate) fn is_later(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
 }

@@ -1,4 +1,4 @@
-//! The server: it listens, lets in, and answers each client in a thread of its own.
+//! The server: it listens, checks requests, and answers each client on a thread of its own.
 
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -15,24 +15,24 @@ use crate::patient::{self, Patient};
 use crate::session::Session;
 use crate::socket::talk;
 
-/// Clients at a time, at most.
+/// Most clients at a time.
 const MOST_CLIENTS: usize = 32;
-/// How long a client may take to say what it wants, and to take what it is sent.
+/// How long a client may take to send its request, and to receive its answer.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How long a client that has its answer may take to end what it says.
+/// How long a connection stays open after the answer, for bytes that the client still sends.
 const FAREWELL: Duration = Duration::from_secs(1);
-/// How long is waited before it is looked for new clients again.
+/// Interval at which the server looks for new clients.
 const NEXT_CLIENT: Duration = Duration::from_millis(20);
 
-/// What is served.
+/// What a server serves.
 pub struct View {
-    /// The page: an HTML file that needs no other.
+    /// The page: an HTML file that needs no other file.
     pub page: Vec<u8>,
-    /// Makes what a new client talks to.
+    /// Makes the session of a new client.
     pub session: Box<dyn Fn() -> Box<dyn Session> + Send + Sync>,
 }
 
-/// Why nothing is served.
+/// Why a server cannot serve.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
     /// The address cannot be listened on.
@@ -40,25 +40,25 @@ pub enum ViewError {
     Listen {
         /// The address.
         address: SocketAddr,
-        /// Why.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// There is no chance to make a token of.
+    /// The system has no random numbers for a token.
     #[error("the system gives no random numbers: {0}")]
     Token(getrandom::Error),
-    /// Listening has ended.
+    /// Accepting connections failed.
     #[error("no more clients can be taken: {0}")]
     Accept(io::Error),
 }
 
-/// Listens on an address.
+/// A server that listens on an address.
 pub struct Server {
     listener: TcpListener,
     guard: Guard,
 }
 
 impl Server {
-    /// Listens on an address; port 0 is any that is free.
+    /// Listens on an address. Port 0 means any free port.
     ///
     /// # Errors
     /// An address that cannot be listened on, or a system without random numbers.
@@ -79,7 +79,8 @@ impl Server {
         })
     }
 
-    /// The address of the page, with the token. Where all addresses are listened on, it names this machine's own.
+    /// The address of the page, with the token. If the server listens on all addresses, this is the
+    /// address of the local machine.
     #[must_use]
     pub fn url(&self) -> String {
         let mut address = self.guard.address;
@@ -89,10 +90,10 @@ impl Server {
         format!("http://{address}/?token={}", self.guard.token)
     }
 
-    /// Serves until it is stopped; clients are then sent away.
+    /// Serves until it is stopped; then all clients are disconnected.
     ///
     /// # Errors
-    /// Listening that ends.
+    /// A failure to accept connections.
     pub fn serve(&self, view: &View, is_stopped: &AtomicBool) -> Result<(), ViewError> {
         let n_clients = AtomicUsize::new(0);
         thread::scope(|scope| {
@@ -112,7 +113,7 @@ impl Server {
                 let n_clients = &n_clients;
                 let is_full = n_clients.fetch_add(1, Ordering::Relaxed) >= MOST_CLIENTS;
                 scope.spawn(move || {
-                    // A client that fails ends alone, whatever the reason.
+                    // A client that fails, for whatever reason, does not affect others.
                     let _ = catch_unwind(AssertUnwindSafe(|| {
                         let _ = self.welcome(stream, view, is_full, is_stopped);
                     }));
@@ -173,7 +174,7 @@ impl Server {
     }
 }
 
-/// Whether a client has gone before it was taken.
+/// Whether a client disconnected before it was accepted.
 fn is_of_the_client(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -190,8 +191,9 @@ fn say(stream: &mut TcpStream, status: &str, what: &str) -> io::Result<()> {
     )
 }
 
-/// Sends an answer, which no other page may frame, guess or keep, and reads what the client still says: a connection that is closed on unread bytes is
-/// reset, and the answer is lost with it (RFC 9112, section 9.6).
+/// Sends an answer that other pages may not frame, guess or store, and then reads what the client
+/// still sends: a connection that is closed with unread bytes is reset, and its answer is lost (RFC
+/// 9112, section 9.6).
 fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Result<()> {
     write!(
         stream,

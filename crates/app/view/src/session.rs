@@ -1,7 +1,7 @@
-//! What a client talks to.
+//! The session of a client.
 
-/// What a client talks to: it has one for itself, from its first request to its last.
+/// The session of one client, from its first request to its last.
 pub trait Session: Send {
-    /// The answer to a request; both are whole messages.
+    /// Answers a request. Both are whole messages.
     fn answer(&mut self, request: &[u8]) -> Vec<u8>;
 }

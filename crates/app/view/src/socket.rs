@@ -9,10 +9,12 @@ use tungstenite::{Error, Message, WebSocket};
 use crate::patient::{LOOK, is_later};
 use crate::session::Session;
 
-/// A message that is longer ends the talk, bytes: a file that is dropped on a page is one message.
+/// Longest message, bytes; a longer one ends the connection. A file that is dropped on a page is
+/// one message.
 const LONGEST: usize = 64 << 20;
 
-/// Answers a client, message for message, until it leaves, is not understood, or the program is stopped.
+/// Answers a client, one answer a message, until it leaves, sends something invalid, or the program
+/// is stopped.
 pub(crate) fn talk(
     stream: TcpStream,
     session: &mut dyn Session,
@@ -28,7 +30,7 @@ pub(crate) fn talk(
         match socket.read() {
             Ok(Message::Binary(request)) => socket.send(Message::binary(session.answer(&request)))?,
             Ok(Message::Text(request)) => socket.send(Message::binary(session.answer(request.as_bytes())))?,
-            Ok(_) => (), // pings are answered, and a farewell ends the next turn
+            Ok(_) => (), // tungstenite answers pings; a close frame ends the next turn of the loop
             Err(Error::Io(error)) if is_later(&error) => (),
             Err(Error::ConnectionClosed | Error::AlreadyClosed) => return Ok(()),
             Err(error) => return Err(error),

@@ -1,4 +1,5 @@
-//! Clients of a server: let in and refused, many at a time, gone without a word, and sent away at the end.
+//! Clients of a server: accepted and refused, many at a time, disconnected without notice, and
+//! disconnected at the end.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -13,7 +14,7 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket, client};
 use twintac_view::{Server, Session, View, ViewError};
 
-/// Answers with what it was asked before, and what it is asked now.
+/// Answers with the previous request and the present one.
 struct Echo {
     before: Vec<u8>,
     open: Arc<AtomicUsize>,
@@ -76,7 +77,7 @@ impl Running {
         self.url.rsplit('=').next().unwrap()
     }
 
-    /// What is answered to a head and bytes behind it.
+    /// The answer to a head and the bytes after it.
     fn ask(&self, head: &str) -> String {
         let mut stream = TcpStream::connect(self.host()).unwrap();
         stream.write_all(head.as_bytes()).unwrap();
@@ -205,7 +206,8 @@ fn clients_have_sessions_of_their_own_and_fail_alone() {
         }
     }
     running.has_open(10);
-    // One fails, one leaves without a word, one says something that is no frame, one says farewell.
+    // One fails, one disconnects without notice, one sends bytes that are no frame, one sends a
+    // close frame.
     sockets[0].send(Message::binary(b"fail".to_vec())).unwrap();
     assert!(sockets[0].read().is_err());
     drop(sockets.remove(1));
@@ -254,7 +256,7 @@ fn who_is_refused_reads_why_however_much_it_still_says() {
         let posted = running.ask(&format!("POST {path} HTTP/1.1\r\n{host}{length}\r\n{body}"));
         assert!(posted.starts_with("HTTP/1.1 405 "), "{posted}");
     }
-    // A full server answers before it is asked.
+    // A full server answers before it reads a request.
     let sockets: Vec<_> = (0..32)
         .map(|_| running.connect(running.token(), None).unwrap())
         .collect();

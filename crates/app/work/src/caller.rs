@@ -1,24 +1,25 @@
-//! Who runs the stages.
+//! The program that runs the work.
 
 use std::fmt;
 use std::sync::Arc;
 
 use crate::{Progress, Silent};
 
-/// The program that a run is worked on with.
+/// The program that runs the work.
 #[derive(Clone)]
 pub struct Caller {
-    /// Tells one build of the program from another: a stage that another build made is run again, as that one may compute something else.
-    /// The command line gives the SHA-256 of its own file. By default it is the version of this library.
+    /// Identifies the build of the program. A stage that another build made is run again, because
+    /// that build may compute something else. The command line gives the SHA-256 of its own file.
+    /// The default is the version of this library.
     pub program: String,
-    /// What the report names as the command that made it.
+    /// The command that the report names as its origin.
     pub command: String,
-    /// Hears how the work goes.
+    /// Receives the progress of the work.
     pub progress: Arc<dyn Progress>,
 }
 
 impl Default for Caller {
-    /// A program that uses this library and hears nothing.
+    /// A program that uses this library and ignores all reports of progress.
     fn default() -> Self {
         let name = concat!("twintac ", env!("CARGO_PKG_VERSION"));
         Self {

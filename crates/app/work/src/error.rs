@@ -1,4 +1,4 @@
-//! What can go wrong in work of the program.
+//! The errors of the application crates.
 
 use std::error::Error;
 use std::io;
@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 
 use twintac_store::StoreError;
 
-/// What is wrong, where, and what to do. The text of an error leaves its [`source`](Error::source) out: print the whole chain.
+/// Says what is wrong, where, and what to do. The text of an error does not contain its
+/// [`source`](Error::source): print the whole chain.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorkError {
-    /// Where the source happened: a stage, a file, or a press.
+    /// Adds where the source error happened: a stage, a file, or a press.
     #[error("{place}")]
     In {
         /// The place.
         place: String,
-        /// What happened there.
+        /// The error that happened there.
         source: Box<Self>,
     },
     /// A device could not be reached.
@@ -23,10 +24,11 @@ pub enum WorkError {
     Network {
         /// What was tried.
         action: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// A file could not be read or written, a folder is in use, or a stage is not as it would be made now.
+    /// A file could not be read or written, a folder is in use, or a stage does not match its
+    /// present inputs.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// A table could not be read.
@@ -34,7 +36,7 @@ pub enum WorkError {
     Csv {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error of the CSV reader or writer.
         source: csv::Error,
     },
     /// A fitted material could not be written as TOML.
@@ -51,16 +53,17 @@ pub enum WorkError {
         /// What was expected in it.
         source: Box<Self>,
     },
-    /// [`Progress::is_stopped`](crate::Progress::is_stopped) said so.
-    #[error("stopped before it was done; the same again goes on from there")]
+    /// The caller stopped the work: [`Progress::is_stopped`](crate::Progress::is_stopped) returned
+    /// true.
+    #[error("stopped before it was done; the same command continues from there")]
     Stopped,
-    /// What was given cannot be used: what is wrong, and what to do.
+    /// An input cannot be used. The text says what is wrong and what to do.
     #[error("{0}")]
     Input(String),
-    /// A setting cannot be what it is.
+    /// A setting has a value that is not allowed.
     #[error("setting {0}")]
     Setting(#[from] twintac_config::Problem),
-    /// A file that people write is wrong.
+    /// A file that a person wrote (TOML) has an error.
     #[error(transparent)]
     Config(#[from] twintac_config::ConfigError),
     /// A protocol does not fit the sensor.
@@ -81,22 +84,22 @@ pub enum WorkError {
     /// A material could not be fitted.
     #[error(transparent)]
     Calibrate(#[from] twintac_calibrate::CalibrateError),
-    /// Shapes cannot be learned.
+    /// The shape classifier could not be trained.
     #[error(transparent)]
     Classify(#[from] twintac_classify::ClassifyError),
-    /// A shape can't be.
+    /// A shape is impossible.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
-    /// The fast twin had no lesson.
+    /// A training press of the surrogate could not be made.
     #[error(transparent)]
     Teach(#[from] twintac_teach::TeachError),
-    /// A fast twin could not be read or written.
+    /// A surrogate could not be read or written.
     #[error(transparent)]
     Fast(#[from] twintac_fast::FastFileError),
-    /// A twin could not be made or judged.
+    /// A twin could not be trained or evaluated.
     #[error(transparent)]
     Twin(#[from] digitac::DigitacError),
-    /// The emulated bench's physics failed.
+    /// The physics of the emulated bench failed.
     #[error(transparent)]
     Lab(#[from] twintac_lab::LabError),
     /// The emulated devices failed.
@@ -105,7 +108,7 @@ pub enum WorkError {
     /// The sensor could not be read.
     #[error(transparent)]
     Source(#[from] twintac_source::SourceError),
-    /// What was read could not be shown.
+    /// Frames could not be displayed.
     #[error(transparent)]
     Live(#[from] twintac_live::LiveError),
     /// Robot or force sensor could not be used.
@@ -120,20 +123,20 @@ pub enum WorkError {
     /// A picture or a page could not be made.
     #[error(transparent)]
     Plot(#[from] twintac_plot::PlotError),
-    /// What a source of tables over depth failed with.
+    /// The error of a source of tables over depth.
     #[error(transparent)]
     Tables(#[from] Box<dyn Error + Send + Sync>),
 }
 
 impl WorkError {
-    /// A file with which an action went wrong: `.map_err(WorkError::file("reading", path))`.
+    /// Wraps the error of an action on a file: `.map_err(WorkError::file("reading", path))`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Store(StoreError::File { action, path, source })
     }
 }
 
-/// Says where an error happened.
+/// Adds where an error happened.
 pub trait At<T> {
     /// Puts a place before the error.
     fn at(self, place: impl FnOnce() -> String) -> Result<T, WorkError>;

@@ -1,4 +1,4 @@
-//! Texts of files, and what tells files apart.
+//! Texts of files, and their SHA-256.
 
 use std::fs;
 use std::path::Path;
@@ -21,7 +21,8 @@ pub fn sha256(bytes: &[u8]) -> String {
     Digest::of(bytes).to_string()
 }
 
-/// SHA-256 of a file's bytes as hexadecimal digits: what tells one build of a program from another, where it is the program's own file.
+/// SHA-256 of a file's bytes as hexadecimal digits. For the program's own file it identifies the
+/// build.
 ///
 /// # Errors
 /// The file cannot be read.

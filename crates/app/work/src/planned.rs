@@ -1,4 +1,4 @@
-//! Protocols as files, planned for a sensor.
+//! Press protocols (TOML files), planned for a sensor.
 
 use std::path::Path;
 
@@ -8,17 +8,17 @@ use twintac_sensor::Sensor;
 use crate::WorkError;
 use crate::files::read_text;
 
-/// What a protocol does to a sensor.
+/// The presses and loads of a protocol on one sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
     /// The presses, in order.
     pub presses: Vec<PressPlan>,
-    /// The weights that are put on after them.
+    /// The weights that are put on after the presses.
     pub loads: Vec<LoadPlan>,
 }
 
 impl Planned {
-    /// Reads a protocol and plans it. The seed decides what the protocol leaves to chance.
+    /// Reads a protocol and plans it. The seed decides what the protocol draws at random.
     ///
     /// # Errors
     /// A file that cannot be read or is wrong; indenters or taxels that the sensor does not have.
@@ -31,7 +31,7 @@ impl Planned {
         )
     }
 
-    /// Plans a protocol from its text, which `file` names in errors.
+    /// Plans a protocol from its text. Error messages name `file`.
     ///
     /// # Errors
     /// Those of [`read`](Self::read).
@@ -52,7 +52,7 @@ impl Planned {
     }
 }
 
-/// What a protocol must know of a sensor.
+/// The part of a sensor's description that a protocol needs.
 #[must_use]
 pub fn target(sensor: &Sensor) -> Target {
     let indenters = sensor.indenters.iter().map(|indenter| indenter.name.clone());

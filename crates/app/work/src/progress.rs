@@ -1,4 +1,4 @@
-//! Following long work, and stopping it.
+//! Progress reports of long work, and stopping it.
 
 use std::ops::ControlFlow;
 
@@ -6,9 +6,10 @@ use twintac_store::Outcome;
 
 use crate::WorkError;
 
-/// Hears how work goes that takes from seconds to minutes. Calls come from any thread, those of one piece of work in between its
-/// [`started`](Self::started) and [`finished`](Self::finished). There is one piece of work at a time. A method that is not written does
-/// nothing.
+/// Receives progress reports of work that takes seconds to minutes. Calls come from any thread.
+/// Those of one piece of work come between its [`started`](Self::started) and
+/// [`finished`](Self::finished). There is one piece of work at a time. The default of each method
+/// does nothing.
 ///
 /// ```
 /// use std::sync::atomic::{AtomicUsize, Ordering};
@@ -24,22 +25,23 @@ use crate::WorkError;
 /// }
 /// ```
 pub trait Progress: Send + Sync {
-    /// Work starts. `n_steps` is 0 where steps come to light on the way.
+    /// Work starts. `n_steps` is 0 if the number of steps is found during the work.
     fn started(&self, work: &str, n_steps: usize) {
         let _ = (work, n_steps);
     }
 
-    /// The work takes so many steps more.
+    /// The work has this many more steps.
     fn more_steps(&self, n_steps: usize) {
         let _ = n_steps;
     }
 
-    /// A step is done. `state` says in a few words how things stand; it may be empty.
+    /// A step is done. `state` describes the state in a few words; it may be empty.
     fn step(&self, state: &str) {
         let _ = state;
     }
 
-    /// Whether the work should end before its next step, with [`WorkError::Stopped`]. What is done is kept.
+    /// Whether the work should end before its next step, with [`WorkError::Stopped`]. Complete
+    /// results are kept.
     fn is_stopped(&self) -> bool {
         false
     }
@@ -52,34 +54,34 @@ pub trait Progress: Send + Sync {
         let _ = (name, outcome);
     }
 
-    /// A person should know this, a sentence.
+    /// A message that a person should read, one sentence.
     fn note(&self, text: &str) {
         let _ = text;
     }
 }
 
-/// Hears nothing.
+/// Ignores all reports.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
 impl Progress for Silent {}
 
-/// A piece of work; dropped, it is finished.
+/// A piece of work. It reports its end when it is dropped.
 pub struct Work<'a>(&'a dyn Progress);
 
 impl<'a> Work<'a> {
-    /// Tells that work starts. `n_steps` is 0 where steps come to light on the way.
+    /// Reports that work starts. `n_steps` is 0 if the number of steps is found during the work.
     pub fn start(progress: &'a dyn Progress, work: &str, n_steps: usize) -> Self {
         progress.started(work, n_steps);
         Self(progress)
     }
 
-    /// A step is done; how things stand, in a few words.
+    /// Reports that a step is done, with the state in a few words.
     pub fn step(&self, state: &str) {
         self.0.step(state);
     }
 
-    /// A step is done; whether to go on.
+    /// Reports that a step is done, and returns whether to continue.
     pub fn advance(&self) -> ControlFlow<()> {
         self.step("");
         if self.0.is_stopped() {
@@ -89,19 +91,19 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Nothing, unless the work should end.
+    /// Returns `Ok` if the work should continue.
     ///
     /// # Errors
-    /// [`WorkError::Stopped`].
+    /// [`WorkError::Stopped`] if it should end.
     pub fn go_on(&self) -> Result<(), WorkError> {
         go_on(self.0)
     }
 }
 
-/// Nothing, unless work should end.
+/// Returns `Ok` if work should continue.
 ///
 /// # Errors
-/// [`WorkError::Stopped`].
+/// [`WorkError::Stopped`] if it should end.
 pub fn go_on(progress: &dyn Progress) -> Result<(), WorkError> {
     if progress.is_stopped() {
         return Err(WorkError::Stopped);

@@ -1,13 +1,13 @@
-//! What numbers of settings may be, said once for each type.
+//! Allowed ranges of the numbers of settings, stated once for each type.
 
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 
 use crate::{ConfigError, Document};
 
-/// Settings that say what each of their numbers may be.
+/// Settings that state the allowed range of each of their numbers.
 ///
-/// Take `self` apart in [`check`](Self::check), so that a field without a range does not compile:
+/// Destructure `self` in [`check`](Self::check): then a field that was forgotten does not compile.
 ///
 /// ```
 /// use twintac_config::{Checked, Ranges};
@@ -26,13 +26,13 @@ use crate::{ConfigError, Document};
 /// assert_eq!(problem.to_string(), "`depth_mm` is 1e300; give 0.01 to 50");
 /// ```
 pub trait Checked {
-    /// Names every number and what it may be.
+    /// Passes each number to `ranges` with its allowed range.
     fn check(&self, ranges: &mut Ranges);
 
-    /// Whether all numbers are what they may be.
+    /// Checks that all numbers are within their ranges.
     ///
     /// # Errors
-    /// The first that is not.
+    /// The first number that is not.
     fn checked(&self) -> Result<(), Problem> {
         let mut ranges = Ranges::default();
         self.check(&mut ranges);
@@ -40,13 +40,13 @@ pub trait Checked {
     }
 }
 
-/// A field that cannot be what it is.
+/// A field with a value that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{field}` {problem}; {hint}")]
 pub struct Problem {
     /// Dotted path of the field, with array indices from 0.
     pub field: String,
-    /// What is wrong, read after the field's name.
+    /// What is wrong: the end of a sentence that begins with the field's name.
     pub problem: String,
     /// What to do about it.
     pub hint: String,
@@ -63,7 +63,7 @@ impl Problem {
     }
 }
 
-/// Takes the ranges of numbers, and remembers the first number that is beyond its own.
+/// Compares numbers with their ranges, and keeps the first number that is outside.
 #[derive(Debug, Default)]
 pub struct Ranges {
     inside: String,
@@ -71,7 +71,7 @@ pub struct Ranges {
 }
 
 impl Ranges {
-    /// A number, and from where to where it makes sense, both included.
+    /// Checks a number against a range; both ends belong to it.
     pub fn number(&mut self, field: &str, value: impl Number, range: RangeInclusive<f64>) {
         let number = value.number();
         let hint = || format!("give {} to {}", Shown(*range.start()), Shown(*range.end()));
@@ -83,7 +83,7 @@ impl Ranges {
         );
     }
 
-    /// The same of a number that may be zero as well: what it is about is then left out.
+    /// Checks a number that may also be 0, which switches off what the number controls.
     pub fn zero_or(&mut self, field: &str, value: impl Number, range: RangeInclusive<f64>) {
         let number = value.number();
         let hint = || format!("give 0, or {} to {}", Shown(*range.start()), Shown(*range.end()));
@@ -91,7 +91,7 @@ impl Ranges {
         self.that(field, is_right, || format!("is {}", Shown(number)), hint);
     }
 
-    /// A list of so many numbers at most, each in a range.
+    /// Checks a list: at most `most` numbers, each within a range.
     pub fn numbers<N: Number>(&mut self, field: &str, values: &[N], most: usize, range: RangeInclusive<f64>) {
         self.that(
             field,
@@ -104,18 +104,18 @@ impl Ranges {
         }
     }
 
-    /// A list of numbers that rise.
+    /// Checks that the numbers of a list rise strictly.
     pub fn rising(&mut self, field: &str, values: &[f64]) {
         let is_right = values.is_sorted_by(|a, b| a < b);
         self.that(
             field,
             is_right,
             || format!("is {values:?}"),
-            || "give numbers that rise",
+            || "give increasing numbers",
         );
     }
 
-    /// Settings inside of these.
+    /// Checks settings that are a field of these settings.
     pub fn inside(&mut self, field: &str, settings: &impl Checked) {
         let outside = self.inside.clone();
         self.inside = format!("{outside}{field}.");
@@ -123,15 +123,16 @@ impl Ranges {
         self.inside = outside;
     }
 
-    /// The first number that is beyond its range, if there is one.
+    /// Ends the check.
     ///
     /// # Errors
-    /// That number.
+    /// The first number that was outside of its range.
     pub fn finish(self) -> Result<(), Problem> {
         self.first.map_or(Ok(()), Err)
     }
 
-    /// Anything else that has to hold of a field: otherwise, what is wrong and what to do.
+    /// Checks any other condition on a field; `problem` and `hint` say what is wrong and what to do
+    /// if it does not hold.
     pub fn that<P: Into<String>, H: Into<String>>(
         &mut self,
         field: &str,
@@ -145,7 +146,7 @@ impl Ranges {
     }
 }
 
-/// A number of any kind.
+/// A number of any type.
 pub trait Number: Copy {
     /// Its value, to the nearest double.
     fn number(self) -> f64;
@@ -163,7 +164,7 @@ macro_rules! number {
 
 number!(f64, f32, usize, u64, u32, u16, u8);
 
-/// A number as people write it.
+/// A number as people write it: without an exponent unless it is very large or very small.
 struct Shown(f64);
 
 impl Display for Shown {
@@ -178,10 +179,10 @@ impl Display for Shown {
 }
 
 impl<T: Checked> Document<T> {
-    /// What the file says, if all of its numbers are what they may be.
+    /// The value of the file, if all of its numbers are within their ranges.
     ///
     /// # Errors
-    /// The first that is not, at its line.
+    /// The first number that is not, at its line.
     pub fn checked(self) -> Result<T, ConfigError> {
         match self.value.checked() {
             Ok(()) => Ok(self.value),

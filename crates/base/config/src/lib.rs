@@ -1,7 +1,14 @@
-//! Reads the TOML files that people write; every error names the file, the line and the field.
+//! Reads the TOML configuration files that people write. Every error names the file, the line and
+//! the field.
 //!
-//! Parse once into a serde type, keep the [`Document`], and report what validation finds through
-//! [`Document::error`], which looks up the line of the field:
+//! Input: a TOML text, or the path of a file. Output: a value of a serde type, or a [`ConfigError`]
+//! that says what is wrong and what to do about it.
+//!
+//! - [`read`] and [`parse`] give a [`Document`]: the value, together with the text that it came
+//!   from. [`read_over`] and [`parse_over`] read files that contain only what differs from a base
+//!   value.
+//! - [`Checked`] and [`Ranges`] state the allowed range of each number of a settings type.
+//! - [`Document::error`] reports what later validation finds, at the line of the field:
 //!
 //! ```
 //! #[derive(serde::Deserialize)]
@@ -10,6 +17,22 @@
 //! let error = document.error("height_mm", "is -1 mm", "give a height above zero");
 //! assert_eq!(error.to_string(), "gel.toml:2: `height_mm` is -1 mm; give a height above zero");
 //! ```
+//!
+//! # How it works
+//!
+//! A text is parsed twice: once into a tree that keeps the position (span) of each key and value,
+//! and once by serde into the type. When serde reports an error, its position is looked up in the
+//! tree, which gives the dotted path of the field and its line. Numbers that are not finite (`nan`,
+//! `inf`, `1e999`) are rejected before serde sees them.
+//!
+//! Values that parse can still be unusable. A settings type therefore implements [`Checked`]: it
+//! passes each of its numbers to [`Ranges`] together with the range in which the number makes
+//! sense. [`Document::checked`] reports the first number outside of its range. Tests use
+//! [`with_each_number`], which changes one number of a text after the other, to check that each
+//! number has a range.
+//!
+//! This crate depends on no other crate of the workspace: it does not know what the files are
+//! about.
 
 mod checked;
 mod place;
@@ -24,28 +47,28 @@ use toml::de::DeTable;
 pub use checked::{Checked, Number, Problem, Ranges};
 pub use tried::with_each_number;
 
-/// A parsed file together with its text, so that later findings can name the line.
+/// A parsed file together with its text, so that a later error can name the line.
 #[derive(Clone, Debug)]
 pub struct Document<T> {
-    /// What the file says.
+    /// The parsed value.
     pub value: T,
     /// The name of the file, as the user gave it.
     pub file: String,
     text: String,
 }
 
-/// One thing wrong in one file.
+/// An error in a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {}{problem}; {hint}", self.place(), self.subject())]
 pub struct ConfigError {
-    /// The file as the user named it.
+    /// The file, as the user named it.
     pub file: String,
     /// Line, from 1; 0 if the file as a whole could not be read.
     pub line: usize,
-    /// Dotted path of the field, with array indices from 0: `taxels[3].x_mm`. Text that is not TOML stands
-    /// for itself; empty if the file as a whole could not be read.
+    /// Dotted path of the field, with array indices from 0: `taxels[3].x_mm`. For text that is not
+    /// TOML, the line itself. Empty if the file as a whole could not be read.
     pub field: String,
-    /// What is wrong, read after the field's name.
+    /// What is wrong: the end of a sentence that begins with the field's name.
     pub problem: String,
     /// What to do about it.
     pub hint: String,
@@ -69,11 +92,11 @@ impl ConfigError {
     }
 }
 
-/// Parses a TOML text that `file` names in errors.
+/// Parses a TOML text; errors call it `file`.
 ///
 /// # Errors
-/// Text that is not TOML, unknown and missing fields, wrong types, and numbers that are not finite (`nan`,
-/// `inf`, `1e999`).
+/// Text that is not TOML, unknown and missing fields, wrong types, and numbers that are not finite
+/// (`nan`, `inf`, `1e999`).
 pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<Document<T>, ConfigError> {
     let error = |line: usize, field: String, problem: String, hint: &str| ConfigError {
         file: file.to_owned(),
@@ -132,7 +155,7 @@ pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<Document<T>, 
     }
 }
 
-/// Reads a TOML file that has only what differs from `base`, in tables of any depth.
+/// Reads a TOML file that contains only what differs from `base`, in tables of any depth.
 ///
 /// # Errors
 /// Those of [`read`].
@@ -143,7 +166,8 @@ pub fn read_over<T: DeserializeOwned + Serialize>(
     over(read::<T>(path)?, base)
 }
 
-/// Parses a TOML text that has only what differs from `base`, in tables of any depth; `file` names it in errors.
+/// Parses a TOML text that contains only what differs from `base`, in tables of any depth; errors
+/// call it `file`.
 ///
 /// # Errors
 /// Those of [`parse`].
@@ -178,7 +202,7 @@ fn over<T: DeserializeOwned + Serialize>(
     Ok(Document { value, ..document })
 }
 
-/// Puts values over those of the same name.
+/// Writes the values of `own` over those of the same name in `base`, table by table.
 fn merge(base: &mut toml::Table, own: toml::Table) {
     for (name, value) in own {
         match (base.get_mut(&name), value) {
@@ -191,7 +215,8 @@ fn merge(base: &mut toml::Table, own: toml::Table) {
 }
 
 impl<T> Document<T> {
-    /// Reports a problem with a field at the field's own line (or its nearest existing parent's).
+    /// An error about a field, at the line of the field, or of its nearest parent that the file
+    /// contains.
     pub fn error(&self, field: &str, problem: impl Into<String>, hint: impl Into<String>) -> ConfigError {
         let start = DeTable::parse(&self.text)
             .ok()
@@ -205,7 +230,8 @@ impl<T> Document<T> {
         }
     }
 
-    /// Whether the file itself has this field, as opposed to leaving it to a default.
+    /// Whether the file itself contains this field; a field that takes its default value is not in
+    /// the file.
     #[must_use]
     pub fn has(&self, field: &str) -> bool {
         DeTable::parse(&self.text).is_ok_and(|table| place::of_field(table.get_ref(), field).1)

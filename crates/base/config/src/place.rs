@@ -1,15 +1,16 @@
-//! Where in a text a field stands, and which field stands at a place.
+//! From a field to its position in a text, and back.
 
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-/// Line, from 1, of a byte of the text.
+/// Line (from 1) of a byte of the text.
 pub(crate) fn line_of(text: &str, byte: usize) -> usize {
     1 + text.bytes().take(byte).filter(|b| *b == b'\n').count()
 }
 
-/// Byte at which a field, or its nearest existing parent, starts, and whether the field itself exists.
+/// The byte at which a field starts, or its nearest parent that exists; and whether the field
+/// itself exists.
 pub(crate) fn of_field(table: &DeTable<'_>, field: &str) -> (Option<usize>, bool) {
     let mut start = None;
     let mut inside: Option<&DeValue<'_>> = None;
@@ -54,7 +55,7 @@ pub(crate) fn not_finite(table: &DeTable<'_>) -> Option<(Range<usize>, String, S
     found
 }
 
-/// Line and field of what serde did not like.
+/// Line and field of a serde error.
 pub(crate) fn of_serde_error(text: &str, table: &DeTable<'_>, error: &toml::de::Error) -> (usize, String) {
     let span = error.span().unwrap_or(0..0);
     let mut closest: Option<(usize, String)> = None;
@@ -65,8 +66,8 @@ pub(crate) fn of_serde_error(text: &str, table: &DeTable<'_>, error: &toml::de::
         }
     });
     let mut field = closest.map(|(_, field)| field).unwrap_or_default();
-    // A missing field has no place, and an unknown one inside a tagged table only its table's: serde's
-    // message names it.
+    // A missing field has no position. An unknown field inside of a tagged table has only the
+    // position of the table. In both cases serde's message names the field.
     let names = |start: &str| {
         error
             .message()
@@ -82,7 +83,7 @@ pub(crate) fn of_serde_error(text: &str, table: &DeTable<'_>, error: &toml::de::
     (line_of(text, start), field)
 }
 
-/// Takes a span, a dotted path and, unless the span is a key's, the value.
+/// Gets a span, a dotted path and the value; no value if the span is that of a key.
 type Visit<'a> = dyn FnMut(Range<usize>, &str, Option<&DeValue<'_>>) + 'a;
 
 /// Visits every key (without a value) and every value with its span and dotted path.

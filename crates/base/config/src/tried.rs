@@ -1,11 +1,12 @@
-//! Files with one number changed: what tests try ranges with.
+//! Variants of a file in which one number is changed, for tests of ranges.
 
 use toml::Value;
 
-/// The text with one of its numbers after the other changed to `number`, and the dotted path of that number, in the order of the file.
+/// For each number of the text, in the order of the file: its dotted path, and the text in which
+/// this number is replaced by `number`.
 ///
 /// # Panics
-/// A text that is not TOML.
+/// The text is not TOML.
 #[must_use]
 pub fn with_each_number(text: &str, number: f64) -> Vec<(String, String)> {
     let whole = Value::Table(text.parse().expect("a TOML text"));

@@ -1,4 +1,4 @@
-//! Every way in which a file can be wrong names file, line and field.
+//! Errors name file, line and field, in every way in which a file can be wrong.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -214,7 +214,7 @@ fn a_number_beyond_its_range_is_named_with_its_line_and_what_it_may_be() {
         (
             "1.0, 2.0",
             "2.0, 1.0",
-            "a.toml:1: `limits_mm` is [2.0, 1.0]; give numbers that rise",
+            "a.toml:1: `limits_mm` is [2.0, 1.0]; give increasing numbers",
         ),
         (
             "1.0, 2.0",

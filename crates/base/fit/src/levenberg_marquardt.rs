@@ -1,11 +1,13 @@
-//! Minimization within bounds: Levenberg (1944) and Marquardt (1963), steps damped by the diagonal of the Gauss-Newton matrix.
+//! Minimization within bounds: Levenberg (1944) and Marquardt (1963), steps damped by the diagonal
+//! of the Gauss-Newton matrix.
 
 use crate::Triangle;
 
-/// The search ends where not even this fraction of a step leads to a point that can be.
+/// The search ends when even this fraction of a step leads to points where the cost cannot be
+/// evaluated.
 const LEAST_FRACTION: f64 = 1e-3;
 
-/// Where an unknown may be.
+/// Bounds of an unknown, and its largest step.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
     /// Smallest and largest value.
@@ -14,74 +16,79 @@ pub struct Range {
     pub reach: f64,
 }
 
-/// A cost near a point: gradient, and Gauss-Newton matrix, of which only the lower triangle is read; `[n * n]`.
+/// Second-order model of a cost near a point: its gradient and its Gauss-Newton matrix, `[n * n]`,
+/// of which only the lower triangle is read.
 #[derive(Clone, Debug)]
 pub struct Quadratic {
-    /// Slope of the cost along each unknown.
+    /// Derivative of the cost along each unknown; `[n]`.
     pub gradient: Vec<f64>,
-    /// How the slopes change.
+    /// Second derivatives (Gauss-Newton approximation), row by row; `[n * n]`.
     pub matrix: Vec<f64>,
 }
 
-/// A cost, and where it was evaluated.
+/// A cost that can be evaluated at points.
 pub trait Problem {
-    /// What an evaluation leaves for others.
+    /// What an evaluation computes beside the cost, for later use at the same point.
     type At;
-    /// Why a cost can't be had at all.
+    /// Why the cost cannot be evaluated at all.
     type Error;
 
-    /// The cost at a point, and what else is known there; nothing where the point can't be.
+    /// The cost at a point, and what else is known there; `None` if the point is not feasible.
     ///
     /// # Errors
-    /// The search ends with it.
+    /// An error ends the search.
     fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Self::At)>, Self::Error>;
 
-    /// The cost near a point that was evaluated.
+    /// The second-order model of the cost at a point that was evaluated.
     ///
     /// # Errors
-    /// The search ends with it.
+    /// An error ends the search.
     fn near(&mut self, x: &[f64], at: &Self::At) -> Result<Quadratic, Self::Error>;
 
-    /// A step away from `here` was evaluated and rejected. Whether what is known `here` was corrected by it: then it is asked for again.
+    /// Called when the trial point `there`, a step `way` from `here`, was rejected. Returns whether
+    /// this corrected what is known at `here`; the second-order model is then computed again.
     fn rejected(&mut self, here: &mut Self::At, way: &[f64], there: &Self::At) -> bool {
         let _ = (here, way, there);
         false
     }
 }
 
-/// How a search goes, and when it ends.
+/// How a search proceeds, and when it ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// Damping at first, at least and at most.
+    /// Initial, smallest and largest damping. The search ends at the largest.
     pub damping: [f64; 3],
-    /// By what damping is multiplied after a step that lowers the cost, and after one that does not.
+    /// Factors by which the damping is multiplied: after a step that lowers the cost, and after one
+    /// that does not.
     pub factors: [f64; 2],
-    /// Steps at most, rejected ones included.
+    /// Largest number of steps, including rejected ones.
     pub max_steps: u32,
-    /// The search ends when a step promises to lower the cost by less than this fraction.
+    /// The search ends when the predicted decrease of the cost is below this fraction of the cost.
     pub enough_promised: f64,
-    /// The search ends after so many steps in turn, each of which lowers the cost by less than this fraction.
+    /// The search ends after this number of successive steps that each lower the cost by less than
+    /// this fraction.
     pub patience: (u32, f64),
-    /// A cost that is small enough.
+    /// The search ends when the cost is not above this.
     pub exact: f64,
 }
 
-/// What a search ended with.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Found<A> {
     /// The point with the smallest cost.
     pub x: Vec<f64>,
     /// The cost.
     pub cost: f64,
-    /// What else is known there.
+    /// What else is known at this point.
     pub at: A,
-    /// Steps, rejected ones included.
+    /// Number of steps, including rejected ones.
     pub n_steps: u32,
-    /// Whether the search ended because there was nothing more to gain.
+    /// Whether the search converged within the tolerances of [`Method`].
     pub is_settled: bool,
 }
 
-/// Minimizes a cost from a point that was evaluated. `tell` hears the cost after each step.
+/// Minimizes a cost from a point that was evaluated: `(x, cost, what else is known there)`. Calls
+/// `tell` with the cost after each step.
 ///
 /// # Errors
 /// Those of the problem.
@@ -100,7 +107,7 @@ pub fn minimize<P: Problem>(
     let mut near = problem.near(&x, &at)?;
     while n_steps < method.max_steps && damping < most && fraction > LEAST_FRACTION {
         let Quadratic { gradient, matrix } = &near;
-        // What stands at its bound and would leave it stays there.
+        // An unknown at a bound stays there if the cost falls towards the outside.
         let is_free = |i: usize| {
             let [low, high] = ranges[i].bounds;
             let leaves = x[i] <= low && gradient[i] > 0.0 || x[i] >= high && gradient[i] < 0.0;
@@ -159,7 +166,8 @@ pub fn minimize<P: Problem>(
                     near = problem.near(&x, &at)?;
                 }
             }
-            // Nothing is known there: half the way is tried. More damping would turn the step, but shorten it only after many trials.
+            // The cost is not known there, so half of the way is tried. More damping would turn the
+            // step, but would shorten it only after many trials.
             None => {
                 fraction *= 0.5;
                 tell(cost);
@@ -188,7 +196,8 @@ mod tests {
         exact: 0.0,
     };
 
-    /// Half the square of `ln(1 - x) - ln(1 - where it is 0)`: a Gauss-Newton step from 0 leads beyond 1, where it can't be.
+    /// `0.5 (ln(1 - x) - ln(1 - zero))²`: a Gauss-Newton step from 0 leads beyond 1, where the cost
+    /// is not defined.
     struct UpToOne {
         zero: f64,
         n_beyond: u32,

@@ -1,10 +1,10 @@
-//! Systems of linear equations with a positive definite matrix.
+//! Linear systems with a positive definite matrix.
 
-/// A pivot is at least this times the diagonal of its matrix.
+/// Smallest pivot, as a fraction of the matrix entry on the diagonal.
 const SMALLEST_PIVOT: f64 = 1e-12;
 
-/// The lower triangle whose product with its transpose is a positive definite matrix (Cholesky). Where rounding leaves a pivot that is not positive, a tiny one stands
-/// for it.
+/// The lower triangular Cholesky factor `L` of a positive definite matrix `A = L Lᵀ`. A pivot that
+/// is not positive because of rounding is replaced by a tiny one.
 ///
 /// ```
 /// let triangle = twintac_fit::Triangle::of(vec![4.0, 0.0, 1.0, 3.0], 2); // 4 1; 1 3
@@ -18,7 +18,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The triangle of a matrix of `n` rows, row by row, of which only the lower triangle is read.
+    /// Factorizes a matrix of `n` rows, given row by row. Only its lower triangle is read.
     ///
     /// # Panics
     /// The matrix has other than `n * n` entries.
@@ -29,7 +29,7 @@ impl Triangle {
         Self { lower: matrix, n }
     }
 
-    /// The solution of a system whose right side is given.
+    /// Solves the system for a right side; `[n]`.
     ///
     /// # Panics
     /// The right side has other than `n` entries.
@@ -50,7 +50,8 @@ impl Triangle {
     }
 }
 
-/// Puts the triangle ([`Triangle`]) in the place of the lower triangle of a matrix of `n` rows, for small matrices that are no vectors.
+/// Replaces the lower triangle of a matrix of `n` rows by its Cholesky factor (see [`Triangle`]);
+/// for small matrices that are not in a vector.
 #[inline]
 pub fn factorize(l: &mut [f64], n: usize) {
     for i in 0..n {
@@ -67,7 +68,7 @@ pub fn factorize(l: &mut [f64], n: usize) {
     }
 }
 
-/// Puts the solution of a system in the place of its right side, by the triangle of its matrix.
+/// Replaces the right side of a system by its solution, given the Cholesky factor of the matrix.
 #[inline]
 pub fn solve_by(l: &[f64], x: &mut [f64]) {
     let n = x.len();

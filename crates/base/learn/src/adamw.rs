@@ -6,15 +6,16 @@ const BETA_1: f32 = 0.9;
 /// Decay rate β₂ of the running mean of their squares.
 const BETA_2: f32 = 0.999;
 
-/// Keeps steps finite where gradients vanish.
+/// Keeps steps finite where gradients are close to zero.
 const EPSILON: f32 = 1e-5;
 
-/// What does not change from step to step.
+/// Settings that stay the same in all steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdamWSettings {
-    /// Decay of the parameters, for each unit of the learning rate.
+    /// Weight decay: each step multiplies the parameters by 1 minus this times the learning rate.
     pub weight_decay: f32,
-    /// Longest gradient, over all arrays together: a longer one is shortened to it.
+    /// Largest Euclidean norm of the gradient, over all arrays together: a longer gradient is
+    /// scaled down to it.
     pub gradient_norm: f32,
 }
 
@@ -22,12 +23,12 @@ pub struct AdamWSettings {
 pub struct AdamW {
     settings: AdamWSettings,
     n_steps: i32,
-    /// Means of the gradients and of their squares, of each array.
+    /// For each array, running means of the gradients and of their squares.
     moments: Vec<[Vec<f32>; 2]>,
 }
 
 impl AdamW {
-    /// An optimizer of these arrays, which has not moved yet.
+    /// An optimizer of these arrays, before its first step.
     pub fn new<'a>(arrays: impl Iterator<Item = &'a Vec<f32>>, settings: AdamWSettings) -> Self {
         let moments = |array: &Vec<f32>| [(); 2].map(|()| vec![0.0; array.len()]);
         Self {
@@ -37,7 +38,8 @@ impl AdamW {
         }
     }
 
-    /// Moves the arrays against the gradient, which has the same arrays in the same order.
+    /// Does one step: `arrays` are the parameters, and `gradient` has the same arrays in the same
+    /// order.
     pub fn step<'a>(
         &mut self,
         learning_rate: f64,
@@ -61,7 +63,7 @@ impl AdamW {
     }
 }
 
-/// The factor that makes a gradient no longer than `largest_norm`.
+/// The factor (at most 1) that scales a gradient down to the norm `largest_norm`.
 fn clip<'a>(gradient: impl Iterator<Item = &'a Vec<f32>>, largest_norm: f32) -> f32 {
     let square: f32 = gradient.flatten().map(|slope| slope * slope).sum();
     (1.0 / (square.sqrt() + f32::MIN_POSITIVE) * largest_norm).min(1.0)

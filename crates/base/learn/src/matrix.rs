@@ -4,21 +4,21 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Rows of a product that are summed up side by side: with the widest of the columns below, as many sums as vector registers hold.
+/// Rows of a tile of the product. With the widest tile below, the sums fill the vector registers.
 const HEIGHT: usize = 6;
 
-/// Columns that are summed up side by side, as many as there are.
+/// Columns of a tile: the widest that still fits is taken.
 const WIDTHS: [usize; 4] = [16, 4, 2, 1];
 
-/// Terms of a product that are summed up before they are added to the rest.
+/// Number of terms that are summed before they are added to the result.
 const BLOCK: usize = 512;
 
-/// A matrix, stored row by row.
+/// A matrix of single precision, stored row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrix {
-    /// `[n_rows * n_columns]`
+    /// The values, row by row; `[n_rows * n_columns]`.
     pub values: Vec<f32>,
-    /// Length of a row.
+    /// Number of columns.
     pub n_columns: usize,
 }
 
@@ -43,7 +43,7 @@ impl Matrix {
         self.values.chunks_exact(self.n_columns.max(1))
     }
 
-    /// The same, to be changed.
+    /// The rows, mutable.
     pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [f32]> {
         self.values.chunks_exact_mut(self.n_columns.max(1))
     }
@@ -69,14 +69,15 @@ impl Matrix {
         }
     }
 
-    /// The product of two matrices. Its sums always run in the same order, in fused multiplications and additions, so that every
-    /// processor gives the same bits.
+    /// The product `self · right`. Its terms are added in a fixed order, with fused multiplication
+    /// and addition, so that every processor gives the same bits.
     #[must_use]
     pub fn times(&self, right: &Self) -> Self {
         self.product(self.n_rows(), [self.n_columns, 1], right)
     }
 
-    /// Writes the product of two matrices into a third, whose rows are made as many. Each row of it has the same bits however many there are.
+    /// Writes the product into an existing matrix and sets its size. Each row has the same bits
+    /// whatever number of rows there is.
     pub(crate) fn times_into(&self, right: &Self, result: &mut Self) {
         result.values.clear();
         result.values.resize(self.n_rows() * right.n_columns, 0.0);
@@ -84,13 +85,13 @@ impl Matrix {
         multiply(&self.values, [self.n_columns, 1], right, result);
     }
 
-    /// The product of the transposed matrix and another.
+    /// The product `selfᵀ · right`.
     #[must_use]
     pub fn transposed_times(&self, right: &Self) -> Self {
         self.product(self.n_columns, [1, self.n_columns], right)
     }
 
-    /// The product with the left matrix's values `strides` apart along rows and along columns.
+    /// The product with a left matrix whose rows and columns are `strides` apart in memory.
     fn product(&self, n_rows: usize, strides: [usize; 2], right: &Self) -> Self {
         let mut result = Self::zeros(n_rows, right.n_columns);
         multiply(&self.values, strides, right, &mut result);
@@ -98,7 +99,7 @@ impl Matrix {
     }
 }
 
-/// Adds a product to `result`, with the left matrix's values `strides` apart along rows and along columns.
+/// Adds a product to `result`; rows and columns of the left matrix are `strides` apart in memory.
 fn multiply(left: &[f32], strides: [usize; 2], right: &Matrix, result: &mut Matrix) {
     Arch::new().dispatch(Product {
         left,
@@ -108,8 +109,8 @@ fn multiply(left: &[f32], strides: [usize; 2], right: &Matrix, result: &mut Matr
     });
 }
 
-/// A product, compiled for each instruction set. Not faer's: that one leaves the upper halves of vector registers set, which slows down the
-/// exponentials after it by a factor of thirty.
+/// A product, compiled for each instruction set. faer's product leaves the upper halves of vector
+/// registers set, which makes the exponentials that follow thirty times slower.
 struct Product<'a> {
     left: &'a [f32],
     strides: [usize; 2],
@@ -154,7 +155,7 @@ impl Product<'_> {
         }
     }
 
-    /// Returns its columns.
+    /// Computes one tile, and returns its number of columns.
     #[inline(always)]
     fn tile<const H: usize, const W: usize>(
         &mut self,

@@ -5,10 +5,10 @@ use crate::font;
 use crate::number::{fixed, short};
 use crate::scene::{Anchor, SMALL, Scene};
 
-/// Pixels between the tick texts of a vertical axis, about.
+/// Approximate distance between the tick texts of a vertical axis, px.
 const LEFT_GAP: f64 = 26.0;
 
-/// A quantity's range mapped onto a range of pixels.
+/// Maps a range of values to a range of pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     range: [f64; 2],
@@ -17,7 +17,8 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Maps `range` onto `pixels`; a range without extent is widened, so that every axis can be drawn.
+    /// Maps `range` linearly to `pixels`. A range of length zero is widened, so that every axis can
+    /// be drawn.
     pub(crate) fn linear(range: [f64; 2], pixels: [f64; 2]) -> Self {
         Axis {
             range: widen(range),
@@ -26,7 +27,7 @@ impl Axis {
         }
     }
 
-    /// As [`Axis::linear`], by the logarithm; only positive numbers have a place.
+    /// Like [`Axis::linear`], but maps the logarithm; only positive numbers have a pixel.
     pub(crate) fn logarithmic(range: [f64; 2], pixels: [f64; 2]) -> Self {
         let [low, high] = range;
         let range = if low > 0.0 && high.is_finite() {
@@ -45,7 +46,7 @@ impl Axis {
         }
     }
 
-    /// The pixel of a value; not a number where the value has no place.
+    /// The pixel of a value; NaN if the value has none.
     pub(crate) fn place(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         let fraction = if self.logarithmic {
@@ -56,13 +57,13 @@ impl Axis {
         self.pixels[0] + fraction * (self.pixels[1] - self.pixels[0])
     }
 
-    /// Round values inside the range with their texts, no closer than `gap_px` on average.
+    /// Round values within the range with their texts, at least `gap_px` apart on average.
     pub(crate) fn ticks(&self, gap_px: f64) -> Vec<(f64, String)> {
         let length = (self.pixels[1] - self.pixels[0]).abs();
         let most = (length / gap_px).max(2.0);
         if self.logarithmic {
             let ticks = decades(self.range, most);
-            // A range that is short against a decade.
+            // The range is short compared with a decade.
             if ticks.len() < 2 {
                 round_values(self.range, most)
             } else {
@@ -73,7 +74,7 @@ impl Axis {
         }
     }
 
-    /// Horizontal grid lines and tick texts on the left of the box `[left, right]`.
+    /// Draws horizontal grid lines, and tick texts on the left of the box `[left, right]`.
     pub(crate) fn draw_left(&self, scene: &mut Scene, left: f64, right: f64) {
         for (value, text) in self.ticks(LEFT_GAP) {
             let y = self.place(value);
@@ -82,13 +83,13 @@ impl Axis {
         }
     }
 
-    /// Room that the tick texts of [`draw_left`](Self::draw_left) take, px.
+    /// Width of the tick texts that [`draw_left`](Self::draw_left) draws, px.
     pub(crate) fn left_room(&self) -> f64 {
         let ticks = self.ticks(LEFT_GAP);
         font::widest(ticks.iter().map(|(_, text)| text.as_str()), SMALL) + 6.0
     }
 
-    /// Tick texts below `bottom`, with grid lines up to `top`.
+    /// Draws tick texts below `bottom`, and grid lines up to `top`.
     pub(crate) fn draw_below(&self, scene: &mut Scene, top: f64, bottom: f64) {
         for (value, text) in self.ticks(56.0) {
             let x = self.place(value);
@@ -98,7 +99,7 @@ impl Axis {
     }
 }
 
-/// The smallest range that holds all finite values; `None` if there are none.
+/// The smallest range that contains all finite values; `None` if there are none.
 pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     values
         .into_iter()
@@ -109,7 +110,7 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
         })
 }
 
-/// The range with a margin of `fraction` of its length at either end.
+/// The range with a margin of `fraction` of its length at both ends.
 pub fn padded([low, high]: [f64; 2], fraction: f64) -> [f64; 2] {
     let margin = fraction * (high - low);
     [low - margin, high + margin]
@@ -126,7 +127,8 @@ fn widen([low, high]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Multiples of the smallest round step that gives at most `most` intervals, or of the next one with two values.
+/// Multiples of the smallest round step that gives at most `most` intervals, or of the next one
+/// with two values.
 fn round_values([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {
     let rough = (high - low) / most;
     let power = 10f64.powf(rough.log10().floor());

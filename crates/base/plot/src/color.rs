@@ -1,6 +1,7 @@
-//! Colours: roles that a page can restyle for a dark screen, a palette for series and a scale for maps.
+//! Colours: roles that a page can restyle for a dark screen, a palette for series, and a scale for
+//! maps.
 
-/// What a mark means; its colour follows. Roles are restyled by the page on a dark screen.
+/// The role of a mark, which determines its colour. A page restyles roles on a dark screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ink {
     /// Titles and values.
@@ -9,19 +10,20 @@ pub enum Ink {
     Muted,
     /// Grid lines and frames.
     Grid,
-    /// The paper behind everything.
+    /// The background.
     Paper,
-    /// What the sensor measured.
+    /// Measurements of the sensor.
     Sensor,
-    /// What the twin predicts.
+    /// Predictions of the twin.
     Twin,
-    /// Another thing to tell apart, by number; the palette repeats after [`PALETTE`]'s length.
+    /// Another series, by number; the colours repeat after the length of [`PALETTE`].
     Series(usize),
     /// An exact colour, for maps.
     Rgb([u8; 3]),
 }
 
-/// Colours that stay apart for colour-blind readers (Okabe and Ito 2008), the yellow left out as too pale.
+/// Colours that colour-blind readers can distinguish (Okabe and Ito 2008), without the yellow,
+/// which is too pale.
 pub const PALETTE: [[u8; 3]; 6] = [
     [0, 114, 178],
     [230, 159, 0],
@@ -53,8 +55,9 @@ impl Ink {
     }
 }
 
-/// Seventeen evenly spaced colours of the perceptually uniform scale *viridis* (van der Walt and Smith 2015, CC0);
-/// straight lines between them stay within five units of 255 of the original.
+/// Seventeen evenly spaced colours of the perceptually uniform scale *viridis* (van der Walt and
+/// Smith 2015, CC0). Linear interpolation between them stays within five units of 255 of the
+/// original.
 const VIRIDIS: [[u8; 3]; 17] = [
     [68, 1, 84],
     [72, 24, 106],
@@ -75,7 +78,7 @@ const VIRIDIS: [[u8; 3]; 17] = [
     [253, 231, 37],
 ];
 
-/// The map colour at `fraction` of the scale: dark blue at 0, yellow at 1. Not a number gives mid grey.
+/// The map colour at `fraction` of the scale: dark blue at 0, yellow at 1. NaN gives mid grey.
 pub fn viridis(fraction: f64) -> [u8; 3] {
     if fraction.is_nan() {
         return [0x99, 0x99, 0x99];

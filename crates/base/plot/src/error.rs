@@ -1,4 +1,4 @@
-//! What can go wrong between a scene and a picture on disk.
+//! Errors of pictures and pages.
 
 use std::path::PathBuf;
 
@@ -6,10 +6,10 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlotError {
-    /// The file's ending names no format.
-    #[error("{path}: a picture's file ends in .svg or .png")]
+    /// The extension of the file name is not that of a known format.
+    #[error("{path}: the name of a picture must end in .svg or .png")]
     Format {
-        /// The file that was to be written.
+        /// The file that should have been written.
         path: PathBuf,
     },
     /// A picture could not be rasterised.
@@ -19,21 +19,21 @@ pub enum PlotError {
         width_px: f64,
         /// Requested height in pixels.
         height_px: f64,
-        /// What the rasteriser said.
+        /// Message of the rasteriser.
         reason: String,
     },
     /// A file could not be written.
     #[error("{path} could not be written")]
     Write {
-        /// The file that was to be written.
+        /// The file that should have been written.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }
 
 impl PlotError {
-    /// Writes bytes to a file, whole or not at all.
+    /// Writes bytes to a file, which appears complete or not at all.
     pub(crate) fn write_whole(path: &std::path::Path, bytes: &[u8]) -> Result<(), Self> {
         twintac_store::write_whole(path, bytes).map_err(|source| PlotError::Write {
             path: path.to_owned(),

@@ -1,18 +1,20 @@
-//! The embedded font: widths of texts and outlines of letters, so that no picture needs a font of the system.
+//! The embedded font: widths of texts and outlines of letters, so that no picture needs a font of
+//! the system.
 
 use ttf_parser::{Face, GlyphId};
 
-/// Room that a browser's own font takes beyond the embedded one; `svg` makes it keep to that.
+/// Factor by which texts may be wider in a browser's own font than in the embedded one; `svg` makes
+/// the browser keep to it.
 const SLACK: f64 = 1.06;
-/// The same for heavier texts, which are wider.
+/// The same factor for bold texts, which are wider.
 const BOLD_SLACK: f64 = 1.12;
 
-/// Parses the font; `None` only if the embedded file were damaged, which a test excludes.
+/// Parses the font; `None` only if the embedded file is damaged, which a test excludes.
 pub(crate) fn face() -> Option<Face<'static>> {
     Face::parse(epaint_default_fonts::UBUNTU_LIGHT, 0).ok()
 }
 
-/// Letters of `text` with the distance of each from the start, and the width of all, in em.
+/// Glyphs of `text` with the distance of each from the start, and the width of the text, in em.
 pub(crate) fn layout(face: &Face<'_>, text: &str) -> (Vec<(GlyphId, f64)>, f64) {
     let em = f64::from(face.units_per_em());
     let mut pen = 0.0;
@@ -28,18 +30,18 @@ pub(crate) fn layout(face: &Face<'_>, text: &str) -> (Vec<(GlyphId, f64)>, f64) 
     (letters, pen)
 }
 
-/// Room that a text takes, px, at a height of the font of `size` px.
+/// Width that the layout reserves for a text of font size `size` px, px.
 #[must_use]
 pub fn text_width(text: &str, size: f64) -> f64 {
     face().map_or(0.0, |face| layout(&face, text).1 * size * SLACK)
 }
 
-/// As [`text_width`], for heavier text.
+/// Like [`text_width`], for bold text.
 pub(crate) fn bold_width(text: &str, size: f64) -> f64 {
     text_width(text, size) * BOLD_SLACK / SLACK
 }
 
-/// The largest width of any of the texts, px; 0 without texts.
+/// The largest width of the texts, px; 0 without texts.
 pub(crate) fn widest<'a>(texts: impl IntoIterator<Item = &'a str>, size: f64) -> f64 {
     texts
         .into_iter()
@@ -47,7 +49,7 @@ pub(crate) fn widest<'a>(texts: impl IntoIterator<Item = &'a str>, size: f64) ->
         .fold(0.0, f64::max)
 }
 
-/// The text, cut with dots where it is wider than `room` px.
+/// The text, shortened with dots if it is wider than `room` px.
 pub(crate) fn fitted(text: &str, size: f64, room: f64) -> String {
     cut(text, room, |text| text_width(text, size))
 }
@@ -66,7 +68,7 @@ fn cut(text: &str, room: f64, width: impl Fn(&str) -> f64) -> String {
     String::new()
 }
 
-/// A heavier text in lines of at most `room` px, broken between words.
+/// Bold text in lines of at most `room` px, broken between words.
 pub(crate) fn bold_lines(text: &str, size: f64, room: f64) -> Vec<String> {
     let width = |text: &str| bold_width(text, size);
     let mut lines: Vec<String> = Vec::new();

@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-/// A number with `decimals`, a true minus sign and no negative zero; a dash for what is not a number.
+/// A number with this number of decimals, a true minus sign and no negative zero; a dash for NaN.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -19,7 +19,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with about three digits, with a power of ten where it is very large or small.
+/// A number with about three digits, with a power of ten if it is very large or small.
 pub fn short(value: f64) -> String {
     if !value.is_finite() {
         return "–".into();

@@ -1,4 +1,4 @@
-//! Paints a scene as a PNG on white paper, anti-aliased, with the embedded font.
+//! Paints a scene as a PNG on a white background, anti-aliased, with the embedded font.
 
 use tiny_skia::{
     Color, FillRule, FilterQuality, IntSize, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
@@ -11,8 +11,8 @@ use crate::color::Ink;
 use crate::font;
 use crate::scene::{Anchor, MARGIN, Mark, Scene};
 
-/// The scene on white paper with a margin, as the bytes of a PNG file; `scale` pixels for each pixel of the scene (2 looks
-/// sharp on paper).
+/// The scene on a white background with a margin, as the bytes of a PNG file, with `scale` pixels
+/// for each pixel of the scene (2 looks sharp on paper).
 ///
 /// # Errors
 /// [`PlotError::Raster`] if the size is zero or too large for memory.
@@ -25,7 +25,8 @@ pub fn png(scene: &Scene, scale: f64) -> Result<Vec<u8>, PlotError> {
         .map_err(|error| failed(size_px, error.to_string()))
 }
 
-/// The scene on white paper as large as it is, without a margin: red, green and blue of each pixel, row by row from the top. What is beyond is cut off.
+/// The scene on a white background in its own size, without a margin: red, green and blue of each
+/// pixel, row by row from the top. What is outside of the scene is cut off.
 ///
 /// # Errors
 /// [`PlotError::Raster`] if the size is zero or too large for memory.
@@ -49,7 +50,7 @@ fn failed([width_px, height_px]: [f64; 2], reason: String) -> PlotError {
     }
 }
 
-/// A rectangle of the scene, painted.
+/// Paints a rectangle of the scene.
 fn paint(scene: &Scene, rectangle: [[f64; 2]; 2], scale: f64) -> Result<Pixmap, PlotError> {
     let [x0, y0] = rectangle[0];
     let is_empty = !(scene.width > 0.0 && scene.height > 0.0);
@@ -69,7 +70,7 @@ fn paint(scene: &Scene, rectangle: [[f64; 2]; 2], scale: f64) -> Result<Pixmap, 
 
 struct Canvas {
     pixmap: Pixmap,
-    /// From pixels of the scene to those of the pixmap.
+    /// Transforms pixels of the scene to those of the pixmap.
     transform: Transform,
     face: Face<'static>,
 }
@@ -168,7 +169,7 @@ impl Canvas {
             .post_translate(at[0] as f32, at[1] as f32)
             .post_concat(self.transform);
         self.fill(path.as_ref(), *ink, 1.0, placed);
-        // The embedded font is a light one: an outline gives it the weight of a browser's text.
+        // The embedded font is light: an outline gives it the weight of a browser's text.
         let stroke = Stroke {
             width: if *bold { 0.055 } else { 0.018 },
             ..Stroke::default()
@@ -215,7 +216,7 @@ fn polygon(points: &[[f64; 2]], closed: bool) -> Option<Path> {
     builder.finish()
 }
 
-/// Outlines of a text from the origin, one em high, y down; and its width in em.
+/// Outlines of a text that starts at the origin, one em high, y down; and its width, em.
 fn letters(face: &Face<'_>, text: &str) -> (Option<Path>, f64) {
     let (glyphs, width_em) = font::layout(face, text);
     let unit = 1.0 / f32::from(face.units_per_em());
@@ -265,7 +266,7 @@ impl OutlineBuilder for Pen {
     }
 }
 
-/// A grid of colours as a PNG, one pixel each; `None` if it is empty or ragged.
+/// A grid of colours as a PNG, one pixel each; `None` if it is empty or its rows differ in length.
 pub(crate) fn rgb_png(columns: usize, pixels: &[[u8; 3]]) -> Option<Vec<u8>> {
     pixmap_of(columns, pixels)?.encode_png().ok()
 }

@@ -1,9 +1,10 @@
-//! A picture as plain data: marks in pixels, x right and y down. Charts build one; `svg` and `raster` paint it.
+//! A picture as plain data: marks in pixels, x right and y down. Charts build a scene; `svg` and
+//! `raster` paint it.
 
 use crate::color::Ink;
 use crate::font;
 
-/// Where a text sits relative to its point, along its own direction.
+/// Position of a text relative to its point, along the direction of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The text starts at the point.
@@ -14,7 +15,7 @@ pub enum Anchor {
     End,
 }
 
-/// One thing to paint.
+/// An element to paint.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     /// A stroked line through points.
@@ -25,7 +26,7 @@ pub enum Mark {
         ink: Ink,
         /// Width of the stroke, px.
         width: f64,
-        /// Whether the stroke is interrupted.
+        /// Whether the line is dashed.
         dashed: bool,
     },
     /// A filled polygon.
@@ -34,7 +35,7 @@ pub enum Mark {
         points: Vec<[f64; 2]>,
         /// Colour of the filling.
         ink: Ink,
-        /// 0 is clear, 1 is solid.
+        /// 0 is transparent, 1 is opaque.
         opacity: f64,
     },
     /// A circle, filled, outlined or both.
@@ -47,7 +48,7 @@ pub enum Mark {
         fill: Option<Ink>,
         /// Colour of the outline, 1.25 px wide.
         stroke: Option<Ink>,
-        /// Opacity of the filling: 0 is clear, 1 is solid.
+        /// Opacity of the filling: 0 is transparent, 1 is opaque.
         opacity: f64,
     },
     /// One line of text on its baseline.
@@ -60,11 +61,11 @@ pub enum Mark {
         size: f64,
         /// Colour.
         ink: Ink,
-        /// Which part of the text sits at the point.
+        /// Which part of the text is at the point.
         anchor: Anchor,
-        /// Whether the text is heavier.
+        /// Whether the text is bold.
         bold: bool,
-        /// Whether the text is turned a quarter to the left.
+        /// Whether the text is turned by 90° to the left.
         upwards: bool,
     },
     /// A grid of colours stretched over a rectangle, the first row at the top.
@@ -93,11 +94,11 @@ pub struct Scene {
     pub marks: Vec<Mark>,
 }
 
-/// Height of small print in all pictures, px.
+/// Font size of small print in all pictures, px.
 pub const SMALL: f64 = 11.0;
-/// Paper around a picture in a file of its own, px.
+/// Margin around a picture in its own file, px.
 pub(crate) const MARGIN: f64 = 12.0;
-/// Height of titles in all pictures, px.
+/// Font size of titles in all pictures, px.
 pub(crate) const TITLE: f64 = 13.0;
 
 impl Scene {
@@ -111,12 +112,12 @@ impl Scene {
         }
     }
 
-    /// Adds a line, interrupted where a coordinate is not a finite number.
+    /// Adds a line. It is interrupted where a coordinate is not finite.
     pub fn line(&mut self, points: impl IntoIterator<Item = [f64; 2]>, ink: Ink, width: f64) {
         self.stroke(points, ink, width, false);
     }
 
-    /// Adds an interrupted line.
+    /// Adds a dashed line.
     pub fn dashes(&mut self, points: impl IntoIterator<Item = [f64; 2]>, ink: Ink, width: f64) {
         self.stroke(points, ink, width, true);
     }
@@ -144,7 +145,7 @@ impl Scene {
         finish(&mut run);
     }
 
-    /// Adds a filled polygon; one with a coordinate that is not a finite number is left out.
+    /// Adds a filled polygon. It is left out if a coordinate is not finite.
     pub fn area(&mut self, points: Vec<[f64; 2]>, ink: Ink, opacity: f64) {
         if points.len() > 2 && points.iter().copied().all(is_finite) {
             self.marks.push(Mark::Area { points, ink, opacity });
@@ -194,7 +195,8 @@ impl Scene {
         self.text(at, text, SMALL, ink, anchor, false);
     }
 
-    /// Adds small print centred on a point, but moved and, where it must be, shortened so that it stays in the picture.
+    /// Adds small print centred on a point; it is moved and, if necessary, shortened so that it
+    /// stays in the picture.
     pub fn centred(&mut self, [x, y]: [f64; 2], text: &str, ink: Ink) {
         let text = font::fitted(text, SMALL, self.width);
         let half = 0.5 * font::text_width(&text, SMALL);
@@ -205,7 +207,8 @@ impl Scene {
         self.small([inside, y], text, ink, Anchor::Middle);
     }
 
-    /// Adds the title in the upper left corner, in as many lines as it needs; returns where it ends, px.
+    /// Adds the title in the upper left corner, in as many lines as it needs; returns the y where
+    /// it ends, px.
     pub fn heading(&mut self, text: &str) -> f64 {
         const LINE: f64 = 17.0;
         let mut baseline = 14.0 - LINE;
@@ -240,7 +243,8 @@ impl Scene {
         }
     }
 
-    /// Adds small print that reads upwards, centred on a point, but moved and shortened so that it stays in the picture.
+    /// Adds small print that reads upwards, centred on a point; it is moved and shortened so that
+    /// it stays in the picture.
     pub fn upwards(&mut self, [x, y]: [f64; 2], text: &str) {
         let text = font::fitted(text, SMALL, self.height);
         let half = 0.5 * font::text_width(&text, SMALL);
@@ -262,8 +266,8 @@ impl Scene {
         }
     }
 
-    /// Adds a row of named swatches from `at` on, wrapped at the right edge; returns the height used, px. An entry is a
-    /// name, its colour, and whether its line is interrupted.
+    /// Adds a row of legend entries that starts at `at` and is wrapped at the right edge; returns
+    /// the height, px. An entry is a name, its colour, and whether its line is dashed.
     pub fn legend(&mut self, at: [f64; 2], entries: &[(&str, Ink, bool)]) -> f64 {
         let [left, mut y] = at;
         let mut x = left;
@@ -280,8 +284,8 @@ impl Scene {
         if entries.is_empty() { 0.0 } else { y - at[1] + 16.0 }
     }
 
-    /// Texts that reach beyond the picture. A test of every plot wants none; where there is one all the same, the picture is
-    /// painted larger, so that nothing is ever cut off.
+    /// Texts that extend beyond the picture. A test checks that no plot has any. If there is one
+    /// all the same, the picture is painted larger, so that nothing is ever cut off.
     pub fn overflow(&self) -> Vec<&str> {
         let is_outside = |mark: &&Mark| {
             text_box(mark).is_some_and(|[[x0, y0], [x1, y1]]| {
@@ -298,7 +302,8 @@ impl Scene {
             .collect()
     }
 
-    /// The rectangle that is painted, upper left and lower right: the picture with all its texts, and a margin, px.
+    /// The rectangle that is painted, upper left and lower right corner: the picture with all of
+    /// its texts, and a margin, px.
     pub(crate) fn painted(&self, margin: f64) -> [[f64; 2]; 2] {
         let boxes = self.marks.iter().filter_map(text_box);
         let [[x0, y0], [x1, y1]] = boxes.fold([[0.0, 0.0], [self.width, self.height]], |all, one| {
@@ -311,7 +316,7 @@ impl Scene {
     }
 }
 
-/// Upper left and lower right corner of a text, px; `None` of what is no text.
+/// Upper left and lower right corner of a text, px; `None` for other marks.
 fn text_box(mark: &Mark) -> Option<[[f64; 2]; 2]> {
     const ABOVE: f64 = 0.8;
     const BELOW: f64 = 0.25;
@@ -345,7 +350,7 @@ fn text_box(mark: &Mark) -> Option<[[f64; 2]; 2]> {
 }
 
 impl Mark {
-    /// Room that a text takes along its direction, px; 0 of what is no text.
+    /// Width of a text along its direction, px; 0 for other marks.
     pub(crate) fn text_width(&self) -> f64 {
         match self {
             Mark::Text {

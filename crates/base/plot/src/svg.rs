@@ -1,4 +1,4 @@
-//! Paints a scene as SVG text: no scripts, no links, no font files, the same bytes every time.
+//! Paints a scene as SVG text: no scripts, no links, no font files, and the same bytes every time.
 
 use std::fmt::Write as _;
 
@@ -8,9 +8,10 @@ use crate::scene::{Anchor, Mark, Scene};
 
 const FONTS: &str = "Inter,system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Ubuntu,sans-serif";
 
-/// The scene as an SVG element that stretches with its surroundings; the background stays clear.
+/// The scene as an SVG element that scales with its surroundings. The background is transparent.
 ///
-/// Colours are plain attributes, so that any viewer shows them and a page may restyle them by their value.
+/// Colours are plain attributes, so that every viewer shows them, and a page may restyle them by
+/// their value.
 #[must_use]
 pub fn svg(scene: &Scene) -> String {
     svg_with_margin(scene, 0.0)
@@ -117,7 +118,7 @@ fn text(out: &mut String, mark: &Mark) -> std::fmt::Result {
         String::new()
     };
     let (size, ink, text) = (number(*size), ink.hex(), escape(text));
-    // Whatever font the viewer has, the text takes the room that the layout gave it.
+    // The text gets the width that the layout gave it, whatever font the viewer has.
     let room = number(mark.text_width());
     write!(
         out,
@@ -145,7 +146,8 @@ fn path(points: &[[f64; 2]]) -> String {
     out
 }
 
-/// Two decimals at most and none that are zero: small files, and a hundredth of a pixel is enough.
+/// At most two decimals, without trailing zeros: files stay small, and a hundredth of a pixel is
+/// accurate enough.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -7,10 +7,11 @@ use crate::svg::svg_with_margin;
 use crate::{PlotError, Scene, png};
 
 impl Scene {
-    /// Writes the picture as `.svg` or `.png` (at twice the size), by the file's ending, whole or not at all.
+    /// Writes the picture as `.svg` or `.png` (at twice the size), depending on the extension of
+    /// the file name. The file appears complete or not at all.
     ///
     /// # Errors
-    /// [`PlotError::Format`] for another ending, [`PlotError::Raster`] for an impossible size,
+    /// [`PlotError::Format`] for another extension, [`PlotError::Raster`] for an impossible size,
     /// [`PlotError::Write`] if the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), PlotError> {
         match path.extension().and_then(|ending| ending.to_str()) {

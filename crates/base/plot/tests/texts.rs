@@ -1,4 +1,4 @@
-//! No text leaves its picture, whatever the plot and however long its labels.
+//! No text extends beyond its picture, for any plot and any length of its labels.
 
 #[path = "../examples/plots/plots.rs"]
 mod plots;

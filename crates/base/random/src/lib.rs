@@ -1,10 +1,23 @@
-//! Streams of random numbers, each with a seed and a name.
+//! Reproducible streams of random numbers, each given by a seed and a name.
 //!
-//! A stream depends on its seed and its name alone, never on the order of work: presses that are computed in parallel draw the same
-//! numbers as presses that are computed one after the other, and a new stream changes none of the others.
+//! Input: a seed and a name. Output: a [`RandomStream`], a generator for the crate `rand`.
+//! [`normal`] draws normally distributed numbers from it.
 //!
-//! There are two ways from a seed and a name to a stream, because numbers that were drawn once must stay as they are:
-//! protocols, emulated devices and the lab use [`stream`], the twin uses [`digest_stream`].
+//! # How it works
+//!
+//! A stream depends on its seed and its name alone, never on the order of work: presses that are
+//! computed in parallel draw the same numbers as presses that are computed one after the other, and
+//! a new stream does not change the others.
+//!
+//! There are two ways from a seed and a name to a stream, because numbers that were drawn once must
+//! stay as they are: the training of the twin and of the surrogate of the gel, and data sets, use
+//! [`digest_stream`]; press protocols, emulated devices, the emulated bench and the rest use
+//! [`stream`].
+//!
+//! Normal numbers are made here by the method of Box and Muller: `rand_distr` uses another method,
+//! and every emulated recording would change with it.
+//!
+//! This crate knows neither sensors nor files.
 //!
 //! ```
 //! use twintac_random::{normal, stream};
@@ -21,7 +34,8 @@ use sha2::{Digest, Sha256};
 /// A generator of random numbers: ChaCha with 8 rounds.
 pub type RandomStream = ChaCha8Rng;
 
-/// The stream of a name under a seed: the seed is ChaCha's key, and the name's 64-bit FNV-1a hash the number of the stream.
+/// The stream of a seed and a name: the seed is the key of ChaCha, and the 64-bit FNV-1a hash of
+/// the name is the number of the stream.
 #[must_use]
 pub fn stream(seed: u64, name: &str) -> RandomStream {
     let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
@@ -32,7 +46,7 @@ pub fn stream(seed: u64, name: &str) -> RandomStream {
     stream
 }
 
-/// The stream of a name under a seed: ChaCha's key is the SHA-256 digest of both.
+/// The stream of a seed and a name: the key of ChaCha is the SHA-256 digest of both.
 #[must_use]
 pub fn digest_stream(seed: u64, name: &str) -> RandomStream {
     let mut hash = Sha256::new();
@@ -41,9 +55,11 @@ pub fn digest_stream(seed: u64, name: &str) -> RandomStream {
     ChaCha8Rng::from_seed(hash.finalize().into())
 }
 
-/// A number of the normal distribution about zero with a standard deviation (Box and Muller, 1958).
+/// A normally distributed number with mean zero and the given standard deviation, in the unit of
+/// the deviation (Box and Muller, 1958).
 ///
-/// `rand_distr` draws normal numbers by another method (ziggurat): with it, every emulated recording would change.
+/// `rand_distr` draws normal numbers by another method (ziggurat): with it, every emulated
+/// recording would change.
 pub fn normal(random: &mut impl Rng, deviation: f64) -> f64 {
     let radius: f64 = 1.0 - random.random::<f64>();
     let angle: f64 = random.random();
@@ -56,7 +72,7 @@ mod tests {
 
     use super::*;
 
-    /// Recordings and networks that were made once are made of these numbers.
+    /// Existing recordings and networks were made with these numbers.
     #[test]
     fn streams_stay_as_they_are() {
         let first = |mut stream: RandomStream| [stream.next_u64(), stream.next_u64()];

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::Distance;
 use crate::profile::PlaneDistance;
 
-/// A block standing on z = 0 about the z axis: the common part of an arch along x and an arch along y, so
-/// that two rounded edges meet in a mitre.
+/// A block that stands on z = 0, centred on the z axis. It is the intersection of an arch along x
+/// and an arch along y, so that two rounded edges meet in a mitre.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Block {
     pub(crate) size_mm: DVec3,
@@ -14,8 +14,8 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Exact inside and beside faces and edges' roundings; outside, next to the corners' ridges, a lower
-    /// bound.
+    /// Exact inside, and outside beside faces and rounded edges. Outside, next to the ridges at the
+    /// corners, it is a lower bound.
     pub(crate) fn signed_distance(&self, point_mm: DVec3) -> Distance {
         let along_x = self.arch(0.5 * self.size_mm.x, DVec2::new(point_mm.x, point_mm.z));
         let along_y = self.arch(0.5 * self.size_mm.y, DVec2::new(point_mm.y, point_mm.z));
@@ -34,7 +34,7 @@ impl Block {
         }
     }
 
-    /// Height of the top, if there is any, mm.
+    /// Height of the top, mm; `None` beside the block.
     pub(crate) fn top_height_mm(&self, at_mm: DVec2) -> Option<f64> {
         let over_mm = at_mm.abs() - 0.5 * self.size_mm.truncate();
         if over_mm.max_element() > 0.0 {
@@ -49,12 +49,12 @@ impl Block {
         let DVec3 { x, y, z } = self.size_mm;
         let r = self.edge_radius_mm;
         let quarter = std::f64::consts::FRAC_PI_4;
-        // A rounding takes (1 - π/4) r² off each length of edge; the mitres at the four corners are counted
-        // twice.
+        // A rounded edge removes (1 - π/4) r² for each length of edge; the mitres at the four
+        // corners are counted twice.
         x * y * z - 2.0 * (x + y) * r.powi(2) * (1.0 - quarter) + 8.0 * r.powi(3) * (5.0 / 6.0 - quarter)
     }
 
-    /// Exact distance to a rectangle that stands on 0, its two upper corners round.
+    /// Exact distance to a rectangle that stands on 0 and whose two upper corners are round.
     fn arch(&self, half_width_mm: f64, point_mm: DVec2) -> PlaneDistance {
         let side = if point_mm.x < 0.0 { -1.0 } else { 1.0 };
         let radius_mm = self.edge_radius_mm;
@@ -77,7 +77,7 @@ impl Block {
     }
 }
 
-/// Exact distance to a rectangle from 0 to a height, from a point with x >= 0.
+/// Exact distance to a rectangle from 0 to a height, for a point with x >= 0.
 fn rectangle(point_mm: DVec2, half_width_mm: f64, height_mm: f64) -> PlaneDistance {
     let aside_mm = point_mm.x - half_width_mm;
     let (over_mm, up) = if point_mm.y > 0.5 * height_mm {

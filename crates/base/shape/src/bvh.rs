@@ -1,16 +1,17 @@
-//! A tree of boxes around triangles.
+//! A bounding volume hierarchy: a tree of boxes around triangles.
 
 use glam::{DVec2, DVec3};
 
-/// Triangles of a leaf.
+/// Largest number of triangles in a leaf.
 const LEAF: usize = 4;
 
-/// A binary tree of boxes over triangles, halved by number along the longest axis of their centres.
+/// A binary tree of boxes over triangles. Each node is halved by number of triangles, along the
+/// longest axis of their centres.
 #[derive(Clone, Debug)]
 pub(crate) struct Bvh {
-    /// Children come after their parent.
+    /// Nodes; children follow their parent.
     nodes: Vec<Node>,
-    /// Numbers of triangles; each leaf has a stretch of them.
+    /// Indices of triangles; each leaf has a contiguous range of them.
     order: Vec<usize>,
 }
 
@@ -34,7 +35,8 @@ impl Node {
 }
 
 impl Bvh {
-    /// A tree over some triangles, at least one, by the (minimum, maximum) corners of all triangles' boxes.
+    /// A tree over some triangles (at least one), from the (minimum, maximum) corners of the boxes
+    /// of all triangles.
     pub(crate) fn new(boxes: &[(DVec3, DVec3)], triangles: Vec<usize>) -> Self {
         let n_triangles = triangles.len();
         let mut tree = Self {
@@ -45,12 +47,12 @@ impl Bvh {
         tree
     }
 
-    /// The numbers of its triangles.
+    /// Indices of the tree's triangles.
     pub(crate) fn triangles(&self) -> &[usize] {
         &self.order
     }
 
-    /// Distance from a point to the box around everything, mm; 0 inside.
+    /// Distance from a point to the box around all triangles, mm; 0 inside.
     pub(crate) fn box_distance_mm(&self, point: DVec3) -> f64 {
         self.nodes[0].square_distance(point).sqrt()
     }
@@ -91,12 +93,12 @@ impl Bvh {
         index
     }
 
-    /// Box around everything.
+    /// The box around all triangles.
     pub(crate) fn bounds_mm(&self) -> (DVec3, DVec3) {
         (self.nodes[0].low, self.nodes[0].high)
     }
 
-    /// Visits triangles that may be closest; `visit` returns the smallest square of a distance so far.
+    /// Visits triangles that may be closest; `visit` returns the smallest squared distance so far.
     pub(crate) fn closest(&self, point: DVec3, visit: &mut dyn FnMut(usize) -> f64) {
         let mut best = f64::INFINITY;
         let mut pending = vec![(0.0, 0)];
@@ -112,14 +114,14 @@ impl Bvh {
                 }
                 Content::Children(children) => {
                     let [a, b] = children.map(|child| (self.nodes[child].square_distance(point), child));
-                    // The nearer one is looked at first.
+                    // The nearer child is visited first.
                     pending.extend(if a.0 < b.0 { [b, a] } else { [a, b] });
                 }
             }
         }
     }
 
-    /// Visits the triangles whose boxes a ray may meet; no component of its direction may be zero.
+    /// Visits the triangles whose boxes a ray may meet. No component of its direction may be zero.
     pub(crate) fn along(&self, from: DVec3, direction: DVec3, visit: &mut dyn FnMut(usize)) {
         self.visit(visit, &|node| {
             let (to_low, to_high) = ((node.low - from) / direction, (node.high - from) / direction);
@@ -127,20 +129,20 @@ impl Bvh {
                 to_low.min(to_high).max_element(),
                 to_low.max(to_high).min_element(),
             );
-            // A little more, for what rounding takes of flat boxes.
+            // Some slack for the rounding errors of flat boxes.
             let slack = 1e-9 * (enters.abs() + leaves.abs());
             leaves >= -slack && enters <= leaves + slack
         });
     }
 
-    /// Visits the triangles whose boxes stand over or below a place of the xy plane.
+    /// Visits the triangles whose boxes contain a location of the xy plane, seen along z.
     pub(crate) fn over(&self, at: DVec2, visit: &mut dyn FnMut(usize)) {
         self.visit(visit, &|node| {
             !(at.cmplt(node.low.truncate()).any() || at.cmpgt(node.high.truncate()).any())
         });
     }
 
-    /// Visits the triangles of all leaves whose boxes, and those around them, are met.
+    /// Visits the triangles of all leaves for which `is_met` holds, as for all nodes above them.
     fn visit(&self, visit: &mut dyn FnMut(usize), is_met: &dyn Fn(&Node) -> bool) {
         let mut pending = vec![0];
         while let Some(index) = pending.pop() {

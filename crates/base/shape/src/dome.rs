@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::Distance;
 
-/// Halvings of an interval until it is as narrow as the numbers allow.
+/// Number of halvings of an interval, after which it is as narrow as double precision allows.
 const HALVINGS: usize = 100;
 
-/// A rectangular footprint whose top falls off quadratically from a crown: with `s` the fraction of the way
-/// from the crown to an edge, the top stands at `crown - drop_x s_x² - drop_y s_y²`.
+/// A rectangular footprint whose top falls off quadratically from a crown. With `s` the fraction of
+/// the way from the crown to an edge, the height of the top is `crown - drop_x s_x² - drop_y s_y²`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Dome {
@@ -17,7 +17,7 @@ pub struct Dome {
     pub x_mm: [f64; 2],
     /// Footprint along y, mm: [minimum, maximum].
     pub y_mm: [f64; 2],
-    /// Where the crown stands, mm: [x, y].
+    /// Position of the crown, mm: [x, y].
     pub crown_at_mm: [f64; 2],
     /// Height of the crown, mm.
     pub crown_mm: f64,
@@ -27,19 +27,19 @@ pub struct Dome {
     pub drop_y_mm: [f64; 2],
 }
 
-/// The quadratic fall of the top along one axis: `curvature (at - crown)²` below the crown.
+/// The quadratic fall of the top along one axis, `curvature (at - crown)²`.
 #[derive(Clone, Copy)]
 struct Fall {
     crown_at_mm: f64,
     low_mm: f64,
     high_mm: f64,
-    /// Towards low and towards high, 1/mm.
+    /// On the side of the low and of the high end, 1/mm.
     curvature: [f64; 2],
 }
 
 impl Fall {
     fn new([low_mm, high_mm]: [f64; 2], crown_at_mm: f64, drop_mm: [f64; 2]) -> Self {
-        // A crown above an edge has nothing to fall to on that side.
+        // A crown above an edge has no length to fall over on that side.
         let curvature = |reach_mm: f64, drop_mm: f64| {
             if reach_mm > 0.0 {
                 drop_mm / reach_mm.powi(2)
@@ -71,7 +71,8 @@ impl Fall {
         2.0 * self.curvature(at_mm) * (at_mm - self.crown_at_mm)
     }
 
-    /// Where the closest point of the top lies for a multiplier of its equation.
+    /// The coordinate of the closest point of the top, for a Lagrange multiplier of the equation of
+    /// the top.
     fn pulled(&self, at_mm: f64, multiplier: f64) -> f64 {
         let away_mm = (at_mm - self.crown_at_mm) / (1.0 + 2.0 * multiplier * self.curvature(at_mm));
         (self.crown_at_mm + away_mm).clamp(self.low_mm, self.high_mm)
@@ -98,7 +99,7 @@ impl Dome {
         self.corners()
     }
 
-    /// Height of the top above a point of the footprint, mm; `None` beside it.
+    /// Height of the top above a point of the footprint, mm; `None` beside the footprint.
     #[must_use]
     pub fn top_height_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         let (low, high) = self.corners();
@@ -106,7 +107,7 @@ impl Dome {
         (at.cmpge(low.truncate()).all() && at.cmple(high.truncate()).all()).then(|| self.height_mm(at))
     }
 
-    /// Volume, mm³: a quadratic fall has a mean of a third of its depth.
+    /// Volume, mm³. The mean of a quadratic fall is a third of its depth.
     pub(crate) fn volume_mm3(&self) -> f64 {
         let size = self.corners().1 - self.corners().0;
         let mean_fall_mm = |ends: [f64; 2], crown_at: f64, drops: [f64; 2]| {
@@ -122,11 +123,11 @@ impl Dome {
         self.crown_mm - x.drop_mm(at_mm.x) - y.drop_mm(at_mm.y)
     }
 
-    /// Exact outside. Inside it is exact as long as the point is not further below the top than the top's
-    /// smallest radius of curvature.
+    /// Exact outside. Inside it is exact if the point is not further below the top than the
+    /// smallest radius of curvature of the top.
     ///
-    /// The closest point of a convex set bounded by a separable quadratic depends on one multiplier only,
-    /// found by halving.
+    /// The closest point of a convex set bounded by a separable quadratic depends on a single
+    /// Lagrange multiplier, which is found by bisection.
     pub(crate) fn signed_distance(&self, point_mm: DVec3) -> Distance {
         let (low, high) = self.corners();
         let clamped = point_mm.clamp(low, high.with_z(f64::INFINITY));
@@ -196,7 +197,7 @@ impl Dome {
         let closest = self.pulled(point_mm, high);
         let away = point_mm - closest;
         let distance_mm = away.length();
-        // So close to the top, rounding spoils the direction, but not the normal.
+        // This close to the top, rounding spoils the direction, but not the normal.
         let gradient = if distance_mm > 1e-6 {
             away / distance_mm
         } else {

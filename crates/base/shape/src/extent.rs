@@ -1,10 +1,11 @@
-//! Which sizes and places of a body are plausible in mm.
+//! Which sizes and positions of a body are plausible in mm.
 
 use glam::DVec3;
 
-/// Smallest and largest size along each axis, mm. What is smaller lies between the nodes of any mesh of a gel.
+/// Smallest and largest size along each axis, mm. A smaller body would lie between the nodes of any
+/// mesh of a gel.
 const SIZES_MM: [f64; 2] = [0.1, 1e3];
-/// Farthest that a body may be from its origin, mm.
+/// Largest distance of a body from its origin, mm.
 const FARTHEST_MM: f64 = 1e3;
 
 /// A body that is too small, too large or too far away to be in mm.
@@ -30,7 +31,7 @@ impl ExtentError {
         Err(found)
     }
 
-    /// What is wrong, to be read after the body's name.
+    /// What is wrong: the end of a sentence that begins with the body's name.
     #[must_use]
     pub fn problem(&self) -> String {
         if self.has_size() {
@@ -63,7 +64,7 @@ impl ExtentError {
     fn has_size(&self) -> bool {
         let [least, most] = SIZES_MM;
         let size_mm = self.high_mm - self.low_mm;
-        // A little less, for what rounding takes of the smallest size.
+        // A little more, for the rounding errors of the smallest size.
         size_mm
             .to_array()
             .iter()

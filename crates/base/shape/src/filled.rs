@@ -5,12 +5,13 @@ use crate::bvh::Bvh;
 use crate::surface::bounds_of;
 
 impl TriangleSurface {
-    /// Whether there are closed cavities in it, which nothing outside can reach.
+    /// Whether the surface has closed cavities, which cannot be reached from outside.
     pub(crate) fn has_cavities(&self) -> bool {
         self.is_cavity.contains(&true)
     }
 
-    /// The same to whom asks how far it is: distances are those to a body whose cavities are filled. It still lists their triangles.
+    /// The same surface, but distances are those to a body whose cavities are filled. The list of
+    /// triangles still includes those of the cavities.
     pub(crate) fn with_distances_of_filled(&self) -> Self {
         let all = 0..self.is_cavity.len();
         let boxes: Vec<_> = all.map(|triangle| bounds_of(self.corners(triangle))).collect();

@@ -1,4 +1,4 @@
-//! Which triangles belong together across their edges, and which way they face.
+//! Joins triangles across their edges, and makes them face the same way.
 
 use std::collections::VecDeque;
 
@@ -6,10 +6,12 @@ use glam::{DVec2, DVec3};
 
 use crate::surface_error::SurfaceError;
 
-/// Steps of a turn about an edge: faces that differ by less lie upon each other.
+/// Steps of a full turn about an edge: faces whose angles differ by less than a step lie upon each
+/// other.
 const TURN_STEPS: i64 = 1 << 24;
 
-/// A side of a triangle: the triangle, and which of its edges (from corner 0 to 1, 1 to 2, 2 to 0).
+/// A side of a triangle: the index of the triangle, and which of its edges (0: corner 0 to 1, 1: 1
+/// to 2, 2: 2 to 0).
 type Side = (usize, usize);
 
 /// Triangles that are joined across every edge and face the same way as their neighbours.
@@ -17,12 +19,13 @@ pub(crate) struct Manifold {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// The triangle across each edge of each triangle.
     pub(crate) neighbours: Vec<[usize; 3]>,
-    /// Which connected surface each triangle is of, numbered in order of appearance.
+    /// Index of the connected surface of each triangle, in order of appearance.
     pub(crate) component: Vec<usize>,
     pub(crate) n_components: usize,
 }
 
-/// Joins triangles. Where more than two meet at an edge, each is joined to the next one around the edge that bounds the same body.
+/// Joins triangles across their edges. Where more than two meet at an edge, each is joined to the
+/// next one around the edge that bounds the same body.
 pub(crate) fn join(vertices_mm: &[DVec3], mut triangles: Vec<[u32; 3]>) -> Result<Manifold, SurfaceError> {
     let middle = |[from, to]: [u32; 2]| {
         let sum = vertices_mm[from as usize] + vertices_mm[to as usize];
@@ -75,7 +78,8 @@ pub(crate) fn join(vertices_mm: &[DVec3], mut triangles: Vec<[u32; 3]>) -> Resul
     })
 }
 
-/// Edges that an odd number of triangles have, once for each that is left over.
+/// Edges that belong to an odd number of triangles, each listed once for every side without a
+/// partner.
 pub(crate) fn open_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let edges = edges(triangles).into_iter();
     edges
@@ -84,7 +88,7 @@ pub(crate) fn open_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
         .collect()
 }
 
-/// All edges, the smaller vertex first, with the sides that lie there.
+/// All edges, smaller vertex first, with the sides of triangles that lie there.
 fn edges(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Vec<Side>)> {
     let mut sides: Vec<([u32; 2], Side)> = Vec::with_capacity(3 * triangles.len());
     for index in 0..triangles.len() {
@@ -104,10 +108,11 @@ fn ends(triangles: &[[u32; 3]], (triangle, corner): Side) -> [u32; 2] {
     [corners[corner], corners[(corner + 1) % 3]]
 }
 
-/// Turns triangles that face another way than most of those that they are joined to by edges of two triangles. Fails with an edge
-/// where that is impossible.
+/// Turns triangles that face another way than most of the triangles that they share an edge with,
+/// at edges of exactly two triangles. Fails with an edge where this is impossible.
 fn face_alike(triangles: &mut [[u32; 3]], edges: &[([u32; 2], Vec<Side>)]) -> Result<(), [u32; 2]> {
-    // The triangles across edges of two, and whether they face the same way.
+    // For each triangle: the triangles across edges of exactly two triangles, and whether they face
+    // the same way.
     let mut across: Vec<Vec<(usize, bool, [u32; 2])>> = vec![Vec::new(); triangles.len()];
     for (edge, sides) in edges {
         if let [one, other] = sides[..] {
@@ -151,8 +156,8 @@ fn face_alike(triangles: &mut [[u32; 3]], edges: &[([u32; 2], Vec<Side>)]) -> Re
     Ok(())
 }
 
-/// The sides that bound the same body next to an edge that more than two triangles have: going around the edge, material begins behind one
-/// face and ends at the next. What finds no partner is left out.
+/// Pairs of sides that bound the same body, at an edge of more than two triangles. Around the edge,
+/// material begins behind one face and ends at the next. Sides without a partner are left out.
 fn pairs_around(
     vertices_mm: &[DVec3],
     triangles: &[[u32; 3]],
@@ -170,14 +175,16 @@ fn pairs_around(
             let turn = DVec2::new(apex.dot(right), apex.dot(up)).to_angle() / std::f64::consts::TAU;
             let first = *first_turn.get_or_insert(turn);
             let steps = ((first - turn) * TURN_STEPS as f64).round() as i64;
-            // Material lies behind a face, clockwise of a triangle that runs along the edge. It ends before it begins.
+            // Material lies behind a face, which is clockwise of a triangle that runs along the
+            // edge. Where two faces lie upon each other, the end of material comes before its
+            // beginning.
             let begins = ends(triangles, (triangle, corner)) == edge;
             (steps.rem_euclid(TURN_STEPS), begins, (triangle, corner))
         })
         .collect();
     around.sort_unstable();
     let (mut begun, mut pairs): (Vec<Side>, Vec<(Side, Side)>) = (Vec::new(), Vec::new());
-    // Twice around, as material may lie across the start.
+    // Goes around twice, because material may extend across the start.
     let mut is_done = vec![false; around.len()];
     for round in 0..2 {
         for (place, &(_, begins, side)) in around.iter().enumerate() {

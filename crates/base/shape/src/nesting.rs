@@ -1,4 +1,4 @@
-//! Which connected surfaces are bodies and which are cavities in them.
+//! Finds which connected surfaces are bodies and which are cavities in them.
 
 use glam::DVec3;
 
@@ -6,9 +6,9 @@ use crate::bvh::Bvh;
 use crate::surface_error::SurfaceError;
 use crate::winding::Winding;
 
-/// Volume over area and diagonal that a body has at least.
+/// Smallest volume of a body, divided by its area and its diagonal.
 const LEAST_THICKNESS: f64 = 1e-8;
-/// Corners of a surface that are looked for in another one, at most.
+/// Largest number of corners of a surface that are tested for being inside of another one.
 const MOST_CORNERS: usize = 200;
 
 /// A connected closed surface.
@@ -21,21 +21,22 @@ pub(crate) struct Shell {
     pub(crate) area_mm2: f64,
 }
 
-/// What a shell is.
+/// What a shell bounds.
 #[derive(Clone, Copy)]
 pub(crate) struct Role {
-    /// Which body it bounds, from 0.
+    /// Index of the body that the shell bounds, from 0.
     pub(crate) body: usize,
-    /// Whether it has to be turned: triangles face away from the material.
+    /// Whether its triangles have to be turned, so that they face away from the material.
     pub(crate) is_turned: bool,
-    /// Whether material lies around it, not in it.
+    /// Whether the material is around the shell and not inside of it.
     pub(crate) is_cavity: bool,
 }
 
-/// Tells bodies from cavities.
+/// Classifies shells as bodies or cavities.
 ///
-/// A shell that lies in no other one is a body, whichever way it faces. One that lies in a body and faces the opposite way is a cavity of it. One
-/// that faces the same way is a body within a body. What lies in a cavity and faces the opposite way is a body again.
+/// A shell inside of no other shell is a body, whichever way it faces. A shell inside of a body
+/// that faces the opposite way is a cavity of that body; one that faces the same way is a body
+/// within a body. A shell inside of a cavity that faces the opposite way is again a body.
 pub(crate) fn roles(
     shells: &[Shell],
     vertices_mm: &[DVec3],

@@ -1,18 +1,20 @@
-//! Where surfaces lie in the inside of others, or in their own.
+//! Searches for surfaces inside of other surfaces, or inside of themselves.
 
 use glam::DVec3;
 
 use crate::bvh::Bvh;
 use crate::winding::Winding;
 
-/// Distance of the places that are looked at, over the surface's diagonal.
+/// Distance between sample points, as a fraction of the surface's diagonal.
 const SPACING: f64 = 0.04;
-/// How far from the surface it is looked whether that is inside, over the surface's diagonal: twice of what corners may be off.
+/// Distance from the surface at which a point is tested for being inside, as a fraction of the
+/// surface's diagonal: twice the possible error of corners.
 const ASIDE: f64 = 2e-5;
-/// Places along a triangle's edge at most, and places at all at most.
+/// Largest number of sample points along a triangle's edge, and in total.
 const MOST: (f64, usize) = (64.0, 50_000);
 
-/// Places on some triangles of a surface, each with its share of the area and the way out of the body, mm.
+/// Sample points on some triangles of a surface, each with the area that it stands for and the
+/// outward normal.
 pub(crate) struct Places {
     places: Vec<Place>,
     aside_mm: f64,
@@ -59,8 +61,8 @@ impl Places {
         }
     }
 
-    /// The share of the area behind which the closed surface with these places does not have the winding number of its material, and a place
-    /// there, mm.
+    /// The fraction of the area behind which the winding number of this closed surface is not that
+    /// of its material, and a sample point there, mm. `None` if there is no such point.
     pub(crate) fn without_material(
         &self,
         bvh: &Bvh,
@@ -79,7 +81,7 @@ impl Places {
         Some((share, within.first()?.at_mm))
     }
 
-    /// A place in front of which another body has its inside, if there is one, mm.
+    /// A sample point in front of which another body has its interior, mm; `None` if there is none.
     pub(crate) fn in_other(&self, other: &Bvh, corners: &dyn Fn(usize) -> [DVec3; 3]) -> Option<DVec3> {
         let winding = Winding::new();
         let in_front = |place: &Place| place.at_mm + self.aside_mm * place.normal;

@@ -1,9 +1,9 @@
-//! Where a rigid body stands.
+//! Position and orientation of a rigid body.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A rigid transform, named `a_from_b` where it takes points given in frame `b` to frame `a`.
+/// A rigid transform, named `a_from_b` if it takes points given in frame `b` to frame `a`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Origin of the inner frame in the outer frame, mm.
@@ -20,7 +20,7 @@ impl Default for Pose {
 }
 
 impl Pose {
-    /// The transform that changes nothing.
+    /// The identity transform.
     pub const IDENTITY: Self = Self {
         position_mm: DVec3::ZERO,
         rotation: DQuat::IDENTITY,
@@ -35,7 +35,8 @@ impl Pose {
         }
     }
 
-    /// The pose in the outer frame of what has this pose in the inner one.
+    /// The composition of poses: an object that has the pose `inner` in the inner frame has the
+    /// result as its pose in the outer frame.
     #[must_use]
     pub fn of(&self, inner: &Self) -> Self {
         Self {
@@ -44,13 +45,13 @@ impl Pose {
         }
     }
 
-    /// Takes a point from the inner to the outer frame, mm.
+    /// Transforms a point from the inner to the outer frame, mm.
     #[must_use]
     pub fn transform_point(&self, point_mm: DVec3) -> DVec3 {
         self.rotation * point_mm + self.position_mm
     }
 
-    /// Takes a point from the outer to the inner frame, mm.
+    /// Transforms a point from the outer to the inner frame, mm.
     #[must_use]
     pub fn inverse_transform_point(&self, point_mm: DVec3) -> DVec3 {
         self.rotation.inverse() * (point_mm - self.position_mm)

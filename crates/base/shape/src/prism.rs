@@ -1,12 +1,12 @@
-//! Profiles with a thickness and rounded edges.
+//! Extruded profiles with rounded edges.
 
 use glam::{DVec2, DVec3};
 
 use crate::profile::{PlaneDistance, Profile};
 use crate::{Distance, SignedDistance};
 
-/// A profile, extruded to both sides of its plane and then grown by a radius in all directions. What is
-/// wanted round is made smaller by the radius first.
+/// A profile, extruded to both sides of its plane and then grown by a radius in all directions. For
+/// a rounded shape of a given size, the profile is made smaller by the radius first.
 #[derive(Clone, Debug)]
 pub(crate) struct Prism {
     pub(crate) profile: Profile,
@@ -15,7 +15,7 @@ pub(crate) struct Prism {
     pub(crate) placement: Placement,
 }
 
-/// How a prism lies in its shape's frame.
+/// Orientation of a prism in the frame of its shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Placement {
     /// The profile lies in the xy plane; the prism stands on z = 0.
@@ -73,7 +73,7 @@ impl SignedDistance for Prism {
     }
 }
 
-/// Distance to a slab of the given half thickness about 0 and the sign of its gradient.
+/// Distance to a slab of the given half thickness about 0, and the sign of its gradient.
 fn slab(height_mm: f64, half_mm: f64) -> (f64, f64) {
     (
         height_mm.abs() - half_mm,
@@ -81,8 +81,8 @@ fn slab(height_mm: f64, half_mm: f64) -> (f64, f64) {
     )
 }
 
-/// Distance to the common part of a cylinder set (any profile, extruded along z without end) and a set
-/// between levels. Exact, as the two are orthogonal.
+/// Distance to the intersection of an infinite prism (a profile extruded along z) and a slab
+/// between two levels. It is exact, because the two are orthogonal.
 pub(crate) fn extrude(profile: PlaneDistance, (level_mm, level_sign): (f64, f64)) -> Distance {
     let aside = profile.gradient.extend(0.0);
     let along = DVec3::Z * level_sign;

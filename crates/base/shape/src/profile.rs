@@ -14,20 +14,22 @@ pub(crate) struct PlaneDistance {
 /// A flat figure about the origin of its plane.
 #[derive(Clone, Debug)]
 pub(crate) enum Profile {
-    /// Everything within a radius.
+    /// A disc.
     Disc { radius_mm: f64 },
-    /// Everything between two radii.
+    /// The area between two radii.
     Annulus {
         inner_radius_mm: f64,
         outer_radius_mm: f64,
     },
-    /// Two crossed bars along the diagonals of the plane, their hollow corners rounded by a radius of at most the difference of the sizes.
+    /// Two crossed bars along the diagonals of the plane. Their concave corners are rounded, by a
+    /// radius of at most the difference of the sizes.
     X {
         half_length_mm: f64,
         half_width_mm: f64,
         hollow_radius_mm: f64,
     },
-    /// A convex polygon with at least three corners, counterclockwise, without edges of length zero.
+    /// A convex polygon with at least three corners, counterclockwise, without edges of length
+    /// zero.
     Convex { corners_mm: Vec<DVec2> },
 }
 
@@ -119,7 +121,7 @@ impl Profile {
     }
 }
 
-/// Direction away from the axis; on the axis any direction is as good as another.
+/// Direction away from the axis; on the axis, an arbitrary one.
 fn outward(point_mm: DVec2, length_mm: f64) -> DVec2 {
     if length_mm > f64::MIN_POSITIVE {
         point_mm / length_mm
@@ -128,7 +130,8 @@ fn outward(point_mm: DVec2, length_mm: f64) -> DVec2 {
     }
 }
 
-/// Bars of half a size along both axes, seen in the eighth of the plane that holds half a bar's side and end.
+/// Crossed bars along both axes, given by half of their length and width, evaluated in the octant
+/// of the plane that contains half of a bar's side and end.
 fn crossed_bars(half_mm: DVec2, hollow_radius_mm: f64, point_mm: DVec2) -> PlaneDistance {
     let mut folded_mm = point_mm.abs();
     let is_swapped = folded_mm.y > folded_mm.x;
@@ -169,7 +172,8 @@ fn crossed_bars(half_mm: DVec2, hollow_radius_mm: f64, point_mm: DVec2) -> Plane
     found
 }
 
-/// Inside, the nearest edge's line counts; outside, the nearest point of the nearest edge.
+/// Inside, the distance is that to the line of the nearest edge; outside, to the nearest point of
+/// the nearest edge.
 fn convex(corners_mm: &[DVec2], point_mm: DVec2) -> PlaneDistance {
     let mut inside = PlaneDistance {
         distance_mm: f64::NEG_INFINITY,

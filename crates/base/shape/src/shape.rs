@@ -1,4 +1,4 @@
-//! The rigid shapes that press.
+//! Rigid shapes of indenters.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -12,9 +12,9 @@ use crate::shape_error::{above_zero, between};
 use crate::union::Union;
 use crate::{Distance, Pose, ShapeError, SignedDistance, SurfaceFile, Surfaces, TriangleSurface};
 
-/// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp shape is
-/// made smaller by the radius and then grown by it in all directions. Prismatic shapes have their profile in
-/// the xy plane and stand on z = 0, `height_mm` tall.
+/// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp
+/// shape is made smaller by the radius and then grown by it in all directions. Prismatic shapes
+/// have their profile in the xy plane and stand on z = 0, `height_mm` tall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Shape {
@@ -47,7 +47,8 @@ pub enum Shape {
         width_mm: f64,
         /// Height, mm.
         height_mm: f64,
-        /// Rounding of the edges, and of the hollow corners between the bars as far as there is room, mm.
+        /// Rounding of the edges, and of the concave corners between the bars as far as there is
+        /// room, mm.
         edge_radius_mm: f64,
     },
     /// An upright tube.
@@ -70,7 +71,7 @@ pub enum Shape {
         /// Edge rounding, mm.
         edge_radius_mm: f64,
     },
-    /// A roof-shaped wedge that touches with its ridge, which lies along y.
+    /// A wedge like a roof upside down: it touches with its ridge, which lies along y.
     Wedge {
         /// Full opening angle at the ridge, radians.
         angle_rad: f64,
@@ -81,9 +82,11 @@ pub enum Shape {
         /// Rounding of the ridge and edges, mm.
         edge_radius_mm: f64,
     },
-    /// A closed triangle surface in an STL file; its lowest point is moved to the origin's z. Cavities count as filled: no gel can get into them.
+    /// A closed triangle surface in an STL file; its lowest point is moved to z = 0. Cavities count
+    /// as filled, because no gel can get into them.
     Stl(SurfaceFile),
-    /// Several shapes held together, which may overlap. Their poses are in the frame of the whole, whose origin need not be its lowest point.
+    /// Several shapes joined rigidly, which may overlap. Their poses are in the frame of the union,
+    /// whose origin need not be its lowest point.
     Union {
         /// The shapes, at least one.
         parts: Vec<Part>,
@@ -96,17 +99,18 @@ pub enum Shape {
 pub struct Part {
     /// The part's shape.
     pub shape: Shape,
-    /// Where it stands in the whole.
+    /// Pose of the part in the frame of the union.
     #[serde(default)]
     pub whole_from_part: Pose,
 }
 
-/// Smallest half width of a shape, mm: what is thinner lies between the nodes of any mesh of a gel.
+/// Smallest half width of a shape, mm. A thinner shape would lie between the nodes of any mesh of a
+/// gel.
 const THINNEST_MM: f64 = 0.05;
-/// Longest length of a shape, mm: that of a floor or a table.
+/// Largest length of a shape, mm: enough for a floor or a table.
 const LONGEST_MM: f64 = 1e6;
 
-/// A length of a shape, of which so many are a half width.
+/// Checks a length that consists of this number of half widths.
 fn length(field: &str, found: f64, half_widths: f64) -> Result<(), ShapeError> {
     between(field, found, half_widths * THINNEST_MM, LONGEST_MM).map_err(|error| ShapeError {
         expected: format!("{} (lengths are in mm)", error.expected),
@@ -114,7 +118,7 @@ fn length(field: &str, found: f64, half_widths: f64) -> Result<(), ShapeError> {
     })
 }
 
-/// A rounding that leaves something of each of these half widths.
+/// Checks a rounding: it must leave something of each of these half widths.
 fn rounding(found: f64, half_widths_mm: &[f64]) -> Result<(), ShapeError> {
     let most = half_widths_mm.iter().copied().fold(f64::INFINITY, f64::min);
     if found >= 0.0 && found < most {
@@ -128,7 +132,7 @@ fn rounding(found: f64, half_widths_mm: &[f64]) -> Result<(), ShapeError> {
 }
 
 impl Shape {
-    /// Whether there can be such a shape.
+    /// Checks that such a shape is possible.
     ///
     /// # Errors
     /// The first field whose value is out of range.
@@ -230,7 +234,8 @@ impl Shape {
         }
     }
 
-    /// The triangle surfaces that the shape is made of, each with the field of its path.
+    /// The triangle surfaces that the shape consists of, each with the name of the field of its
+    /// path.
     #[must_use]
     pub fn surface_files(&self) -> Vec<(String, &SurfaceFile)> {
         match self {
@@ -248,7 +253,7 @@ impl Shape {
         }
     }
 
-    /// Gives other paths to the triangle surfaces that the shape is made of.
+    /// Replaces the paths of the triangle surfaces that the shape consists of.
     pub fn rename_surfaces(&mut self, rename: &dyn Fn(&str) -> String) {
         match self {
             Self::Stl(file) => file.path = rename(&file.path),
@@ -259,11 +264,11 @@ impl Shape {
         }
     }
 
-    /// The shape as an exact signed distance, with its origin at the point of first touch (for triangle surfaces: at the height of their
-    /// lowest point).
+    /// The shape as an exact signed distance, with its origin at the point of first contact (for
+    /// triangle surfaces: at the height of their lowest point).
     ///
     /// # Errors
-    /// Those of [`Shape::validate`], and an STL file that is not among the surfaces.
+    /// Those of [`Shape::validate`], and an STL file that is not in `surfaces`.
     // long: a paragraph for each kind of shape
     pub fn signed_distance_field(&self, surfaces: &Surfaces) -> Result<Box<dyn SignedDistance>, ShapeError> {
         self.validate()?;
@@ -382,14 +387,14 @@ impl Part {
             return Err(ShapeError::new(
                 "whole_from_part",
                 found,
-                "a finite place and a unit quaternion",
+                "a finite position and a unit quaternion",
             ));
         }
         Ok(())
     }
 }
 
-/// Side of an equilateral triangle over the radius of its inner circle, `2 √3`.
+/// Side of an equilateral triangle divided by the radius of its inscribed circle, `2 √3`.
 const INRADIUS_TO_SIDE: f64 = 3.464_101_615_137_754_6;
 
 struct Ball {
@@ -417,10 +422,11 @@ impl SignedDistance for Ball {
     }
 }
 
-/// A triangle surface moved along z until its lowest point is at 0, its cavities filled.
+/// A triangle surface that is moved along z until its lowest point is at 0, with its cavities
+/// filled.
 struct Lowered {
     surface: Arc<TriangleSurface>,
-    /// Its bodies, if there are several.
+    /// Its bodies, if there is more than one.
     bodies: Vec<BodyOf>,
 }
 

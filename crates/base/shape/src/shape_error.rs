@@ -1,6 +1,6 @@
-//! Why a shape can't be.
+//! Errors of impossible shapes.
 
-/// A shape that can't be.
+/// A shape that is not possible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("`{field}` is {found}, expected {expected}")]
 pub struct ShapeError {
@@ -21,7 +21,7 @@ impl ShapeError {
         }
     }
 
-    /// The same error of a shape that stands in this field of another.
+    /// The same error for a shape that is a field of another one.
     pub(crate) fn within(self, field: &str) -> Self {
         Self {
             field: format!("{field}.{}", self.field),
@@ -30,7 +30,7 @@ impl ShapeError {
     }
 }
 
-/// A number that has to be there.
+/// Checks that a number is above zero.
 pub(crate) fn above_zero(field: &str, found: f64) -> Result<(), ShapeError> {
     if found > 0.0 && found.is_finite() {
         return Ok(());
@@ -38,7 +38,7 @@ pub(crate) fn above_zero(field: &str, found: f64) -> Result<(), ShapeError> {
     Err(ShapeError::new(field, found.to_string(), "a number above 0"))
 }
 
-/// A number within limits, which are allowed.
+/// Checks that a number is within limits, which are allowed themselves.
 pub(crate) fn between(field: &str, found: f64, least: f64, most: f64) -> Result<(), ShapeError> {
     if (least..=most).contains(&found) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What a gel can look like. A gel stands on the plane z = 0 (the printed circuit board).
+//! Shapes of gels. A gel stands on the plane z = 0 (the printed circuit board).
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -9,13 +9,13 @@ use crate::{Distance, Dome, ShapeError, SignedDistance, SurfaceFile, Surfaces, T
 
 /// Smallest and largest size of a gel along each axis, mm.
 const SIZES_MM: [f64; 2] = [0.1, 1e3];
-/// Farthest edge of a gel from the origin of its plane, mm.
+/// Largest distance of a gel's edge from the origin of its plane, mm.
 const FARTHEST_MM: f64 = 1e4;
 
 /// The undeformed gel.
 ///
-/// What a [`Solid::Stl`] looks like stands in the [`Surfaces`] that its methods take. They panic if its surface is not among
-/// them, which is so for no sensor that was read.
+/// The methods look up the surface of a [`Solid::Stl`] in the [`Surfaces`] that they are given.
+/// They panic if it is not there; it always is for a sensor that was read from its description.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Solid {
@@ -23,21 +23,22 @@ pub enum Solid {
     Block {
         /// Full size along x, y and z, mm.
         size_mm: [f64; 3],
-        /// Where the footprint's centre is, mm: [x, y].
+        /// Centre of the footprint, mm: [x, y].
         #[serde(default)]
         center_mm: [f64; 2],
-        /// Rounding of the top edges, mm; 0 leaves them sharp. Two rounded edges meet in a mitre.
+        /// Radius of the top edges, mm; 0 leaves them sharp. Two rounded edges meet in a mitre.
         #[serde(default)]
         edge_radius_mm: f64,
     },
     /// A block with a domed top.
     Dome(Dome),
-    /// A closed triangle surface in an STL file that stands on z = 0. Of several bodies none may overlap or touch another.
+    /// A closed triangle surface in an STL file that stands on z = 0. If it has several bodies,
+    /// none may overlap or touch another.
     Stl(SurfaceFile),
 }
 
 impl Solid {
-    /// Whether there can be such a solid.
+    /// Checks that such a gel is possible.
     ///
     /// # Errors
     /// The first field whose value is out of range.
@@ -81,8 +82,9 @@ impl Solid {
 
     /// Signed distance to the gel's surface, mm.
     ///
-    /// Exact, but for a lower bound at the outside of a block's corner ridges, and for domes further below
-    /// their top than its radius of curvature.
+    /// Exact, with two exceptions: it is a lower bound outside of a block next to its corner
+    /// ridges, and inside of a dome at points further below the top than its smallest radius of
+    /// curvature.
     #[must_use]
     pub fn signed_distance(&self, point_mm: DVec3, surfaces: &Surfaces) -> Distance {
         match *self {
@@ -98,13 +100,13 @@ impl Solid {
         }
     }
 
-    /// Whether a point is in the gel or at most `tolerance_mm` outside.
+    /// Whether a point is inside of the gel or at most `tolerance_mm` outside.
     #[must_use]
     pub fn contains(&self, point_mm: DVec3, tolerance_mm: f64, surfaces: &Surfaces) -> bool {
         self.signed_distance(point_mm, surfaces).distance_mm <= tolerance_mm
     }
 
-    /// Height of the gel's top above a place of its plane, mm; `None` beside the gel.
+    /// Height of the gel's top above a location of its plane, mm; `None` beside the gel.
     #[must_use]
     pub fn top_height_mm(&self, x_mm: f64, y_mm: f64, surfaces: &Surfaces) -> Option<f64> {
         let at = DVec2::new(x_mm, y_mm);
@@ -119,7 +121,7 @@ impl Solid {
         }
     }
 
-    /// Smallest box, as (minimum, maximum) corners, that holds the gel, mm.
+    /// Smallest box that contains the gel, as (minimum, maximum) corners, mm.
     #[must_use]
     pub fn bounds_mm(&self, surfaces: &Surfaces) -> (DVec3, DVec3) {
         match self {
@@ -135,7 +137,7 @@ impl Solid {
         }
     }
 
-    /// Volume, mm³, with whatever is embedded in the gel; exact.
+    /// Volume, mm³, including whatever is embedded in the gel; exact.
     #[must_use]
     pub fn volume_mm3(&self, surfaces: &Surfaces) -> f64 {
         match *self {

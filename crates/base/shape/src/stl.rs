@@ -1,15 +1,16 @@
-//! Triangles out of STL files as programs write them, binary and text.
+//! Reads triangles from STL files, binary and text, as programs write them.
 
 use glam::DVec3;
 
 use crate::stl_text;
 use crate::surface_error::SurfaceError;
 
-/// Bytes before the triangles of a binary file: a comment of 80 and their number.
+/// Number of bytes before the triangles of a binary file: a comment of 80 bytes and the number of
+/// triangles.
 const HEADER_BYTES: usize = 84;
-/// Bytes of a triangle of a binary file: normal, three corners, two spare bytes.
+/// Number of bytes of a triangle in a binary file: normal, three corners, two unused bytes.
 const TRIANGLE_BYTES: usize = 50;
-/// What files of other formats begin with.
+/// First bytes of files of other formats.
 const OTHER_FORMATS: [(&[u8], &str); 12] = [
     (b"\x1f\x8b", "a gzip file"),
     (b"PK\x03\x04", "a ZIP or 3MF file"),
@@ -25,10 +26,11 @@ const OTHER_FORMATS: [(&[u8], &str); 12] = [
     (b"v ", "an OBJ file"),
 ];
 
-/// Corners of all triangles in the unit of the file, which STL files do not tell. The files' normals are not used.
+/// Corners of all triangles in the unit of the file, which an STL file does not state. The normals
+/// of the file are not used.
 ///
-/// A file that is long enough for the number of triangles in its header is binary, whatever it begins with and whatever follows
-/// the last triangle.
+/// A file that is long enough for the number of triangles in its header is a binary one, whatever
+/// it begins with and whatever follows the last triangle.
 pub(crate) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
     let count = bytes
         .get(80..HEADER_BYTES)
@@ -65,7 +67,7 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
     if bytes.trim_ascii().is_empty() {
         return Some("empty");
     }
-    // OBJ files begin with comments.
+    // OBJ files can begin with comments.
     let mut lines = bytes.split(|&byte| byte == b'\n').take(100);
     let first = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))?;
     let known = OTHER_FORMATS.iter().find(|(start, _)| first.starts_with(start));

@@ -1,21 +1,22 @@
-//! STL files in text.
+//! STL files in text form.
 //!
-//! Words may be in upper or lower case, lines end as on any system, and the names of solids are in any encoding: they are not read.
+//! Words may be in upper or lower case, and line ends may be those of any operating system. The
+//! names of solids may be in any encoding, because they are not read.
 
 use glam::DVec3;
 
 use crate::surface_error::SurfaceError;
 
-/// The mark that some editors begin a text in UTF-8 with.
+/// The byte order mark with which some editors begin a text in UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-/// What lines of comments begin with.
+/// First bytes of comment lines.
 const COMMENTS: [&[u8]; 4] = [b"#", b"//", b";", b"!"];
-/// A text begins with a solid or a facet within so many lines, behind comments.
+/// A text file begins with a solid or a facet within this number of lines, after comments.
 const HEAD_LINES: usize = 200;
-/// Letters of a wrong word that a message shows.
+/// Largest number of characters of a wrong word that an error shows.
 const SHOWN: usize = 40;
 
-/// Whether bytes that are no whole binary file are a text.
+/// Whether bytes that are not a complete binary file are a text file.
 pub(crate) fn is_text(bytes: &[u8]) -> bool {
     let starts = |line: &[u8]| {
         let word = words(line).next().unwrap_or_default().to_ascii_lowercase();
@@ -38,12 +39,12 @@ pub(crate) fn read(text: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
         let mut words = words(line);
         while let Some(word) = words.next() {
             match word.to_ascii_lowercase().as_slice() {
-                // What follows is a name or a comment.
+                // A name or a comment follows.
                 b"solid" | b"endsolid" => break,
                 _ if COMMENTS.iter().any(|comment| word.starts_with(comment)) => break,
                 b"facet" => {
                     if facet.replace(Vec::new()).is_some() {
-                        return Err(error("the facet before has no `endfacet`".to_owned()));
+                        return Err(error("the previous facet has no `endfacet`".to_owned()));
                     }
                 }
                 b"normal" => {
@@ -53,7 +54,8 @@ pub(crate) fn read(text: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
                 b"vertex" => {
                     let corner = vertex(&mut words).map_err(error)?;
                     let corners = facet.as_mut();
-                    let corners = corners.ok_or_else(|| error("a vertex stands in no facet".to_owned()))?;
+                    let corners =
+                        corners.ok_or_else(|| error("a vertex is outside of a facet".to_owned()))?;
                     corners.push(corner);
                 }
                 b"endfacet" => {
@@ -63,7 +65,7 @@ pub(crate) fn read(text: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
                         .map_err(|_| error(format!("a facet needs three vertices, not {}", corners.len())))?;
                     triangles.push(three);
                 }
-                _ => return Err(error(format!("{} has no place in an STL file", shown(word)))),
+                _ => return Err(error(format!("{} is not expected in an STL file", shown(word)))),
             }
         }
     }

@@ -14,41 +14,43 @@ use crate::surface_error::SurfaceError;
 use crate::weld::weld;
 use crate::{Distance, ExtentError, SignedDistance, stl};
 
-/// Share of its area with which a connected surface may run through itself, as scans do in their creases.
+/// Largest fraction of its area with which a connected surface may run through itself, as 3D scans
+/// do in their creases.
 const CREASES: f64 = 1e-3;
 
-/// Triangle surfaces by their names, see [`crate::SurfaceFile::name`].
+/// Triangle surfaces by their names; see [`crate::SurfaceFile::name`].
 pub type Surfaces = BTreeMap<String, Arc<TriangleSurface>>;
 
-/// Closed surfaces of triangles with an inside: one body or more, which may have cavities.
+/// A closed triangle surface with an interior: one body or more, which may have cavities.
 ///
-/// Several bodies are united, also where they overlap: outside the distance is exact, inside it is that to the nearest surface of one of
-/// them, as for [`crate::Shape::Union`]. The sign comes from angle-weighted pseudonormals (Bærentzen and Aanæs, Signed Distance
-/// Computation Using the Angle Weighted Pseudonormal, IEEE TVCG 2005), which is exact for any closed surface.
+/// Several bodies form a union, also where they overlap. Outside, the distance is exact; inside, it
+/// is that to the nearest surface of one of them, as for [`crate::Shape::Union`]. The sign comes
+/// from angle-weighted pseudonormals (Bærentzen and Aanæs, Signed Distance Computation Using the
+/// Angle Weighted Pseudonormal, IEEE TVCG 2005), and is exact for every closed surface.
 #[derive(Clone, Debug)]
 pub struct TriangleSurface {
     vertices_mm: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     face_normals: Vec<DVec3>,
-    /// Of the edges from corner 0 to 1, 1 to 2 and 2 to 0.
+    /// Normals of the edges from corner 0 to 1, 1 to 2 and 2 to 0.
     edge_normals: Vec<[DVec3; 3]>,
     vertex_normals: Vec<DVec3>,
-    /// The triangles of each body, those of its cavities among them.
+    /// The triangles of each body, including those of its cavities.
     pub(crate) bodies: Vec<Bvh>,
-    /// Whether each triangle is one of a cavity's.
+    /// Whether each triangle belongs to a cavity.
     pub(crate) is_cavity: Vec<bool>,
     bounds_mm: (DVec3, DVec3),
     volume_mm3: f64,
 }
 
-/// A surface is written as its vertices and triangles, from which all else follows.
+/// A surface is serialized as its vertices and triangles; everything else follows from these.
 impl Serialize for TriangleSurface {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         (&self.vertices_mm, &self.triangles).serialize(serializer)
     }
 }
 
-/// What part of a triangle is closest.
+/// The part of a triangle that is closest to a point.
 #[derive(Clone, Copy)]
 enum Part {
     Face,
@@ -57,11 +59,11 @@ enum Part {
 }
 
 impl TriangleSurface {
-    /// Reads an STL file's bytes, binary or text, in which a length of 1 is so many mm.
+    /// Reads the bytes of an STL file, binary or text, in which a length of 1 is `mm_per_unit` mm.
     ///
     /// # Errors
-    /// What is no whole STL file, sizes and places that are not plausible ([`ExtentError`]), and those of
-    /// [`TriangleSurface::from_triangles`].
+    /// Bytes that are not a complete STL file; sizes and positions that are not plausible
+    /// ([`ExtentError`]); those of [`TriangleSurface::from_triangles`].
     pub fn from_stl(bytes: &[u8], mm_per_unit: f64) -> Result<Self, SurfaceError> {
         let triangles = stl::read(bytes)?.into_iter();
         let triangles: Vec<[DVec3; 3]> = triangles
@@ -75,14 +77,22 @@ impl TriangleSurface {
 
     /// A surface from the corners of its triangles, mm, counterclockwise seen from outside.
     ///
-    /// Equal corners become one vertex; at edges that would stay open those as well that differ by less than 1e-5 of the diagonal. Triangles
-    /// without area are left out, and so are those that are there twice, of a body that is listed twice or of a face that two bodies share.
-    /// Triangles that face another way than their neighbours are turned, and so are whole bodies: what lies in no other body faces outwards. What lies
-    /// in a body and faces against it is a cavity. Edges may have more than two triangles.
+    /// Faults that are corrected:
+    ///
+    /// - Equal corners become one vertex. At edges that would otherwise stay open, corners that
+    ///   differ by less than 1e-5 of the diagonal become one as well.
+    /// - Triangles without area are left out, and duplicate triangles: those of a body that is
+    ///   listed twice, or of a face that two bodies share.
+    /// - Triangles that face another way than their neighbours are turned, and so are whole bodies:
+    ///   a body that is inside of no other body faces outwards. A surface inside of a body that
+    ///   faces against it is a cavity.
+    ///
+    /// Edges may have more than two triangles.
     ///
     /// # Errors
-    /// Surfaces that are not closed, have one side only, enclose nothing, or run through themselves with more than 0.1 % of their area (looked
-    /// for at places 4 % of the diagonal apart); a cavity in a cavity; corners that are not finite.
+    /// The surface is not closed, has one side only, encloses nothing, or runs through itself with
+    /// more than 0.1 % of its area (tested at points 4 % of the diagonal apart); a cavity is inside
+    /// of a cavity; a corner is not finite.
     pub fn from_triangles(corners_mm: &[[DVec3; 3]]) -> Result<Self, SurfaceError> {
         let is_finite = |corners: &[DVec3; 3]| corners.iter().all(|corner| corner.is_finite());
         if let Some(triangle) = corners_mm.iter().position(|corners| !is_finite(corners)) {
@@ -161,7 +171,7 @@ impl TriangleSurface {
         })
     }
 
-    /// The surface with its normals, without bodies.
+    /// The surface with its normals, still without bodies.
     fn with_normals(vertices_mm: Vec<DVec3>, manifold: Manifold) -> Self {
         let Manifold {
             triangles,
@@ -214,19 +224,20 @@ impl TriangleSurface {
         &self.vertices_mm
     }
 
-    /// The triangles as indices of vertices, counterclockwise seen from outside.
+    /// The triangles as indices of vertices, counterclockwise seen from outside; `[n][3]`.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Enclosed volume, mm³; where bodies overlap it counts more than once.
+    /// Enclosed volume, mm³. Where bodies overlap it counts more than once.
     #[must_use]
     pub fn volume_mm3(&self) -> f64 {
         self.volume_mm3
     }
 
-    /// A place where two bodies overlap or touch, mm; `None` if they are apart from each other, or if there is one body only.
+    /// A point where two bodies overlap or touch, mm; `None` if they are apart from each other, or
+    /// if there is only one body.
     #[must_use]
     pub fn bodies_meet_at_mm(&self) -> Option<DVec3> {
         if self.bodies.len() < 2 {
@@ -244,8 +255,8 @@ impl TriangleSurface {
         })
     }
 
-    /// Height of the highest point of the surface above or below a place in the xy plane, mm; `None` beside
-    /// the surface.
+    /// Height of the highest point of the surface on the vertical line through a location of the xy
+    /// plane, mm; `None` beside the surface.
     #[must_use]
     pub fn top_height_mm(&self, at_mm: DVec2) -> Option<f64> {
         let mut highest: Option<f64> = None;
@@ -303,8 +314,8 @@ impl TriangleSurface {
         let away = point_mm - closest;
         let length_mm = square_mm2.sqrt();
         let sign = if away.dot(normal) < 0.0 { -1.0 } else { 1.0 };
-        // Next to the surface rounding spoils the direction, but not the normal; a face's normal is exact
-        // anyway.
+        // Next to the surface, rounding spoils the direction but not the normal. The normal of a
+        // face is exact in any case.
         let near = length_mm < 1e-9 || matches!(part, Part::Face);
         let gradient = if near && normal != DVec3::ZERO {
             normal
@@ -343,7 +354,7 @@ impl SignedDistance for TriangleSurface {
     }
 }
 
-/// Box around some points; `None` around nothing.
+/// Box around points; `None` without points.
 fn bounds<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<(DVec3, DVec3)> {
     let boxes = points.into_iter().map(|point| (*point, *point));
     boxes.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
@@ -353,7 +364,7 @@ pub(crate) fn bounds_of([a, b, c]: [DVec3; 3]) -> (DVec3, DVec3) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-/// The triangles of each group, by the group of each triangle.
+/// Lists the triangles of each group, given the group of each triangle.
 fn members(group_of: &[usize], n_groups: usize) -> Vec<Vec<usize>> {
     let mut members = vec![Vec::new(); n_groups];
     for (triangle, &group) in group_of.iter().enumerate() {
@@ -362,7 +373,8 @@ fn members(group_of: &[usize], n_groups: usize) -> Vec<Vec<usize>> {
     members
 }
 
-/// Gives each connected surface vertices of its own, one surface after the other: also those at which surfaces touch.
+/// Gives each connected surface its own vertices, one surface after the other, also at points where
+/// surfaces touch.
 fn part_vertices(
     vertices_mm: &[DVec3],
     manifold: &mut Manifold,
@@ -400,7 +412,7 @@ fn shell(
 ) -> Shell {
     let (mut volume_mm3, mut area_mm2) = (0.0, 0.0);
     for &triangle in &members {
-        // About one corner, so that a small body far from the origin keeps its digits.
+        // Relative to one corner, so that a small body far from the origin keeps its precision.
         let about = vertices_mm[vertices.start];
         let [a, b, c] = triangles[triangle].map(|vertex| vertices_mm[vertex as usize] - about);
         volume_mm3 += a.dot(b.cross(c)) / 6.0;
@@ -414,7 +426,8 @@ fn shell(
     }
 }
 
-/// Closest point of a triangle and the part that it belongs to; sound for triangles of no area too.
+/// Closest point of a triangle and the part that it belongs to; also valid for triangles without
+/// area.
 fn closest_point(corners: [DVec3; 3], normal: DVec3, point: DVec3) -> (DVec3, Part) {
     let mut best = (f64::INFINITY, corners[0], Part::Corner(0));
     let mut beside_face = normal == DVec3::ZERO;
@@ -442,7 +455,7 @@ fn closest_point(corners: [DVec3; 3], normal: DVec3, point: DVec3) -> (DVec3, Pa
     (point - normal * (point - corners[0]).dot(normal), Part::Face)
 }
 
-/// Height at which a triangle stands over a place; upright triangles stand over nothing.
+/// Height of a triangle above a location; `None` for upright triangles.
 fn height_in([a, b, c]: [DVec3; 3], at: DVec2) -> Option<f64> {
     let area = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
     let (pa, pb, pc) = (a.truncate(), b.truncate(), c.truncate());
@@ -452,7 +465,7 @@ fn height_in([a, b, c]: [DVec3; 3], at: DVec2) -> Option<f64> {
         area(pc, pa, at) / whole,
         area(pa, pb, at) / whole,
     ];
-    // Points on an edge belong to both neighbours, whatever rounding says.
+    // A point on an edge belongs to both triangles, independent of rounding.
     let inside = whole != 0.0 && shares.iter().all(|share| *share >= -1e-12);
     inside.then(|| shares[0] * a.z + shares[1] * b.z + shares[2] * c.z)
 }

@@ -1,8 +1,8 @@
-//! Why a file holds no closed surface.
+//! Errors of files that do not contain a closed surface.
 
 use crate::ExtentError;
 
-/// A file that holds no closed surface.
+/// A file that does not contain a closed surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     /// A file of another format, or an empty one.
@@ -11,15 +11,17 @@ pub enum SurfaceError {
         /// What it is.
         found: &'static str,
     },
-    /// The file is neither text nor as long as its number of triangles asks for.
-    #[error("is no whole STL file: has {found_bytes} bytes, as a binary one it would have {expected_bytes}")]
+    /// The file is neither a text nor as long as its number of triangles requires.
+    #[error(
+        "is not a complete STL file: it has {found_bytes} bytes, a binary one would have {expected_bytes}"
+    )]
     Length {
-        /// Length that goes with the number of triangles, bytes.
+        /// Length that the number of triangles requires, bytes.
         expected_bytes: usize,
         /// Length of the file, bytes.
         found_bytes: usize,
     },
-    /// A text that is no STL.
+    /// A text that is not an STL file.
     #[error("line {line}: {problem}")]
     Text {
         /// Line, from 1.
@@ -27,60 +29,63 @@ pub enum SurfaceError {
         /// What is wrong.
         problem: String,
     },
-    /// A corner that is nowhere.
+    /// A corner whose coordinates are not finite.
     #[error("triangle {triangle} has a corner that is not finite")]
     NotFinite {
-        /// Number of the triangle, from 0.
+        /// Index of the triangle, from 0.
         triangle: usize,
     },
-    /// A size or a place that lengths in mm do not explain.
+    /// A size or a position that is not plausible in mm.
     #[error(transparent)]
     Extent(#[from] ExtentError),
-    /// Nothing that has an inside.
-    #[error("has {triangles} triangles of more than no area, expected at least 4")]
+    /// A surface without an interior.
+    #[error("has {triangles} triangles with an area above zero, expected at least 4")]
     Empty {
-        /// Triangles with three different corners that no other covers.
+        /// Number of triangles with three different corners that are not covered by another.
         triangles: usize,
     },
-    /// Edges that do not belong to two triangles, or to more in pairs.
+    /// Edges that do not belong to two triangles, or to a larger number that can be paired.
     #[error("is not closed: {edges} edges lack a neighbour, one at {}", place(at_mm))]
     NotClosed {
         /// Number of such edges, counted once for each triangle.
         edges: usize,
-        /// Middle of one of them, mm.
+        /// Midpoint of one of them, mm.
         at_mm: [f64; 3],
     },
-    /// A surface with one side only, like a Klein bottle: it has no inside.
-    #[error("is one-sided: its triangles can't all face outwards, as at {}", place(at_mm))]
+    /// A surface with one side only, like a Klein bottle: it has no interior.
+    #[error(
+        "is one-sided: its triangles can't all face outwards, for example at {}",
+        place(at_mm)
+    )]
     OneSided {
-        /// Middle of an edge where two of them can't agree, mm.
+        /// Midpoint of an edge whose two triangles cannot agree, mm.
         at_mm: [f64; 3],
     },
     /// A body that is a sheet without thickness.
-    #[error("body {body}, at {}, encloses nothing", place(at_mm))]
+    #[error("body {body}, at {}, encloses no volume", place(at_mm))]
     Flat {
-        /// Which of the connected surfaces, from 0 in order of their first triangles.
+        /// Index of the connected surface, from 0 in order of first triangles.
         body: usize,
         /// One of its corners, mm.
         at_mm: [f64; 3],
     },
     /// A connected surface that runs through itself.
-    #[error("body {body} overlaps itself with {:.1} % of its surface, as at {}", 100.0 * share, place(at_mm))]
+    #[error("body {body} overlaps itself: {:.1} % of its surface is inside of it, for example at {}", 100.0 * share, place(at_mm))]
     SelfOverlap {
-        /// Which of the connected surfaces, from 0 in order of their first triangles.
+        /// Index of the connected surface, from 0 in order of first triangles.
         body: usize,
-        /// Share of its area that lies in its own inside.
+        /// Fraction of its area that is inside of itself.
         share: f64,
-        /// One place there, mm.
+        /// A point there, mm.
         at_mm: [f64; 3],
     },
-    /// A hollow in a hollow: one of the two faces the wrong way, and nothing says which.
+    /// A cavity in a cavity: one of the two faces the wrong way, and it is unknown which.
     #[error(
         "body {body}, at {}, lies in a cavity and faces inwards like it",
         place(at_mm)
     )]
     Nested {
-        /// Which of the connected surfaces, from 0 in order of their first triangles.
+        /// Index of the connected surface, from 0 in order of first triangles.
         body: usize,
         /// One of its corners, mm.
         at_mm: [f64; 3],
@@ -88,7 +93,8 @@ pub enum SurfaceError {
 }
 
 impl SurfaceError {
-    /// The same in two parts: what is wrong, to be read after the file's name, and what to do about it.
+    /// The error in two parts: what is wrong, as the end of a sentence that begins with the file's
+    /// name, and what to do about it.
     #[must_use]
     pub fn problem_and_remedy(&self) -> (String, String) {
         match self {

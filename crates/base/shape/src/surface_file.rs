@@ -7,16 +7,18 @@ use serde::{Deserialize, Serialize};
 use crate::ShapeError;
 use crate::shape_error::above_zero;
 
-/// A closed triangle surface in an STL file, and the unit of its lengths, which such files do not tell.
+/// A closed triangle surface in an STL file, and the unit of its lengths, which STL files do not
+/// state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceFile {
     /// Path of the STL file, relative to the file that names it.
     pub path: String,
-    /// Unit of its lengths: `"mm"`, `"cm"`, `"m"` or `"inch"`; mm if neither this nor `scale` is given.
+    /// Unit of its lengths: `"mm"`, `"cm"`, `"m"` or `"inch"`; mm if neither this nor `scale` is
+    /// given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<LengthUnit>,
-    /// How many millimetres a length of 1 is, in place of `unit`.
+    /// Length of 1 in the file, in mm; used instead of `unit`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
 }
@@ -39,7 +41,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// All units, by the names that files have for them.
+    /// All units, with the names that they have in files.
     pub const NAMED: [(&str, Self); 4] = [
         ("mm", Self::Millimetre),
         ("cm", Self::Centimetre),
@@ -47,7 +49,7 @@ impl LengthUnit {
         ("inch", Self::Inch),
     ];
 
-    /// Its length, mm.
+    /// Length of the unit, mm.
     #[must_use]
     pub fn in_mm(self) -> f64 {
         match self {
@@ -75,7 +77,7 @@ impl std::str::FromStr for LengthUnit {
 }
 
 impl SurfaceFile {
-    /// A surface whose lengths are in mm.
+    /// A surface with lengths in mm.
     pub fn new(path: impl Into<String>) -> Self {
         Self {
             path: path.into(),
@@ -84,14 +86,14 @@ impl SurfaceFile {
         }
     }
 
-    /// How many millimetres a length of 1 in the file is.
+    /// Length of 1 in the file, mm.
     #[must_use]
     pub fn mm_per_unit(&self) -> f64 {
         let unit = self.unit.unwrap_or(LengthUnit::Millimetre);
         self.scale.unwrap_or(unit.in_mm())
     }
 
-    /// The name of the surface among [`crate::Surfaces`]: its path, and how it is scaled unless it is in mm.
+    /// The name of the surface in [`crate::Surfaces`]: its path, and its scale unless that is mm.
     #[must_use]
     pub fn name(&self) -> Cow<'_, str> {
         match self.mm_per_unit() {
@@ -100,10 +102,10 @@ impl SurfaceFile {
         }
     }
 
-    /// Whether there can be such a surface.
+    /// Checks that such a surface is possible.
     ///
     /// # Errors
-    /// An empty path, a scale that is no number above 0, and a scale beside a unit.
+    /// An empty path, a scale that is not a number above 0, or a scale beside a unit.
     pub fn validate(&self) -> Result<(), ShapeError> {
         if self.path.is_empty() {
             return Err(ShapeError::new("path", "empty", "the path of an STL file"));
@@ -112,8 +114,8 @@ impl SurfaceFile {
             return Ok(());
         };
         if self.unit.is_some() {
-            let found = format!("{scale}, beside a unit");
-            return Err(ShapeError::new("scale", found, "one of the two"));
+            let found = format!("{scale}, although a unit is given");
+            return Err(ShapeError::new("scale", found, "only one of the two"));
         }
         above_zero("scale", scale)
     }

@@ -1,20 +1,22 @@
-//! What of a shape faces the gel: heights of its underside, by which two shapes can be compared.
+//! The contact geometry of a shape: heights of its underside, by which two shapes can be compared.
 
 use glam::{DQuat, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::SignedDistance;
 
-/// Radius of the innermost ring, mm, and of each ring over that of the one before.
+/// Radius of the innermost ring, mm; ratio of the radii of successive rings; number of rings.
 const RINGS: (f64, f64, usize) = (0.25, 1.4, 13);
-/// Directions of each ring.
+/// Number of directions of each ring.
 const N_DIRECTIONS: usize = 12;
-/// Height that stands for all that is higher, and for what is beside the shape, mm.
+/// Height that is used for everything higher, and beside the shape, mm.
 const FAR_MM: f64 = 100.0;
-/// Steps of the search for the underside. Rays that graze a side creep, and count as beside the shape.
+/// Largest number of steps of the search for the underside. Rays that graze a side advance too
+/// slowly, and count as beside the shape.
 const MOST_STEPS: usize = 200;
 
-/// The underside of a shape, turned as it presses: heights above its lowest point, at the origin and on rings around it, mm.
+/// The underside of a shape in the orientation in which it presses: heights above its lowest point,
+/// at the origin and on rings around it, mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Underside {
@@ -22,7 +24,7 @@ pub struct Underside {
 }
 
 impl Underside {
-    /// Finds the underside of a shape.
+    /// Computes the underside of a shape with this orientation.
     #[must_use]
     pub fn of(shape: &dyn SignedDistance, rotation: DQuat) -> Self {
         let (low, high) = shape.bounds_mm();
@@ -32,14 +34,15 @@ impl Underside {
             .collect();
         let lowest_mm = heights_mm.iter().copied().fold(f64::INFINITY, f64::min);
         for height in &mut heights_mm {
-            // A ten thousandth of a millimetre is enough, and short in files.
+            // Rounded to 0.0001 mm, which is accurate enough and short in files.
             *height = (1e4 * (*height - lowest_mm).min(FAR_MM)).round() / 1e4;
         }
         Self { heights_mm }
     }
 
-    /// How differently two shapes dent a flat gel at the same depth, mm: the volume that only one of them takes, over the volume that either takes. 0 for the
-    /// same dent, 1 where nothing is shared. 0 above the gel.
+    /// How differently two shapes indent a flat gel at the same depth (mm): the volume that only
+    /// one of them displaces, divided by the volume that at least one of them displaces. It is 0
+    /// for equal indentations, 1 if nothing is shared, and 0 if neither touches the gel.
     #[must_use]
     pub fn unlikeness(&self, other: &Self, depth_mm: f64) -> f64 {
         let (mut shared, mut either) = (0.0, 0.0);
@@ -58,7 +61,7 @@ fn radii_mm() -> impl Iterator<Item = f64> {
     std::iter::successors(Some(first_mm), wider).take(n_rings)
 }
 
-/// Where heights are taken, mm.
+/// Points at which heights are taken, mm.
 fn places_mm() -> impl Iterator<Item = DVec2> {
     let step = std::f64::consts::TAU / N_DIRECTIONS as f64;
     let ring =
@@ -66,7 +69,8 @@ fn places_mm() -> impl Iterator<Item = DVec2> {
     std::iter::once(DVec2::ZERO).chain(radii_mm().flat_map(ring))
 }
 
-/// The area that each height stands for, mm²: rings meet halfway, on a scale of ratios.
+/// The area that each height represents, mm². Its limits are the geometric means of the radii of
+/// neighbouring rings.
 fn areas_mm2() -> impl Iterator<Item = f64> {
     let (first_mm, ratio, _) = RINGS;
     let pi = std::f64::consts::PI;
@@ -77,7 +81,7 @@ fn areas_mm2() -> impl Iterator<Item = f64> {
         .chain(radii_mm().flat_map(move |radius_mm| std::iter::repeat_n(share(radius_mm), N_DIRECTIONS)))
 }
 
-/// Height of the turned shape's underside above its origin at a place, mm; `None` beside it.
+/// Height of the turned shape's underside above its origin at a point, mm; `None` beside the shape.
 fn height_mm(shape: &dyn SignedDistance, rotation: DQuat, place: DVec2, reach_mm: f64) -> Option<f64> {
     let back = rotation.inverse();
     let mut z_mm = -1.5 * reach_mm;
@@ -127,7 +131,7 @@ mod tests {
     fn shapes_differ_by_what_they_dent_and_turned_balls_do_not() {
         let same = underside(&Shape::Sphere { radius_mm: 5.0 }, DQuat::from_rotation_z(0.7));
         assert!(ball(5.0).unlikeness(&same, 1.0) < 1e-3);
-        // A shallow dent of a ball has a volume of π R d².
+        // A shallow indentation of a ball has the volume π R d².
         let by_radius = ball(5.0).unlikeness(&ball(10.0), 0.2);
         assert!((by_radius - 0.5).abs() < 0.06, "{by_radius}");
         let punch = Shape::Cylinder {

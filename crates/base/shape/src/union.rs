@@ -1,12 +1,13 @@
-//! Several shapes held together.
+//! Several shapes joined rigidly.
 
 use glam::DVec3;
 
 use crate::{Distance, Pose, SignedDistance};
 
-/// The shapes with their poses in the frame of the whole; at least one.
+/// Shapes with their poses in the frame of the union; at least one.
 ///
-/// Outside, the distance is exact. Inside it is that to the nearest surface of one of the parts, which is too short where parts overlap.
+/// Outside, the distance is exact. Inside, it is that to the nearest surface of one of the parts,
+/// which is too short where parts overlap.
 pub(crate) struct Union {
     parts: Vec<(Pose, Box<dyn SignedDistance>)>,
     bounds_mm: (DVec3, DVec3),

@@ -1,4 +1,4 @@
-//! Corners of triangles made to vertices.
+//! Turns corners of triangles into vertices.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use crate::manifold::open_edges;
 
-/// Corners at open edges that are nearer than this part of the surface's diagonal are the same.
+/// Corners at open edges that are nearer to each other than this fraction of the surface's diagonal
+/// are the same.
 const TOLERANCE: f64 = 1e-5;
 
 /// Vertices, and triangles as indices of them.
@@ -15,17 +16,19 @@ pub(crate) struct Welded {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// Makes equal corners one vertex, numbered in order of appearance, and nearly equal ones too where edges stay open without that.
+/// Makes equal corners one vertex, numbered in order of appearance. Nearly equal corners become one
+/// as well where edges would otherwise stay open.
 ///
-/// Triangles that lose a corner by it are left out. So are those that are there twice: one of two that face the same way, as of a
-/// body listed twice, and both of two that face each other, as where two bodies share a face.
+/// Triangles that lose a corner by this are left out. So are duplicates: one of two triangles that
+/// face the same way, as in a body that is listed twice, and both of two that face each other, as
+/// where two bodies share a face.
 pub(crate) fn weld(corners_mm: &[[DVec3; 3]]) -> Welded {
     let mut numbers = BTreeMap::new();
     let mut vertices_mm = Vec::new();
     let mut all = Vec::new();
     for corners in corners_mm {
         all.push(corners.map(|corner| {
-            // Adding zero makes -0 the same as 0.
+            // Adding zero makes -0 equal to 0.
             let key = (corner + DVec3::ZERO).to_array().map(f64::to_bits);
             *numbers.entry(key).or_insert_with(|| {
                 vertices_mm.push(corner);
@@ -53,7 +56,8 @@ pub(crate) fn weld(corners_mm: &[[DVec3; 3]]) -> Welded {
     }
 }
 
-/// For each vertex the one that stands for it: itself, or the first of some vertices within the tolerance.
+/// For each vertex its representative: itself, or the first of the given vertices within the
+/// tolerance.
 fn nearest_kept(vertices_mm: &[DVec3], some: &BTreeSet<u32>) -> Vec<u32> {
     let low = vertices_mm.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = vertices_mm.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -80,9 +84,10 @@ fn nearest_kept(vertices_mm: &[DVec3], some: &BTreeSet<u32>) -> Vec<u32> {
     kept
 }
 
-/// The triangles of three different corners that are there once.
+/// Triangles with three different corners, without duplicates.
 fn single(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    // Of the triangles with the same corners: the first, and whether all face the same way.
+    // For the triangles with the same corners: the index of the first, and whether all face the
+    // same way.
     let mut found: BTreeMap<[u32; 3], (usize, bool)> = BTreeMap::new();
     let turned = |&[a, b, c]: &[u32; 3]| {
         if a < b && a < c {

@@ -1,4 +1,4 @@
-//! Surfaces of several bodies, of bodies that face the wrong way, and surfaces that have no inside.
+//! Surfaces of several bodies, surfaces that face the wrong way, and surfaces without an interior.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -26,7 +26,7 @@ fn cube(half_mm: f64, at_mm: [f64; 3]) -> Triangles {
     moved(&box_triangles(DVec3::splat(half_mm)), at_mm.into())
 }
 
-/// The same box with the other diagonals.
+/// The same box, with the other diagonals of its faces.
 fn other_diagonals(triangles: &Triangles) -> Triangles {
     let sides = triangles.chunks_exact(2).map(|pair| {
         let ([a, b, c], [_, _, d]) = (pair[0], pair[1]);
@@ -56,7 +56,7 @@ fn bodies_that_face_inwards_are_turned() {
             assert_eq!(found, right.signed_distance(DVec3::new(x, 0.3, 0.2)), "{x}");
         }
     }
-    // Single triangles that face another way than the rest.
+    // Some triangles that face another way than the rest.
     let mut some = ball_triangles(3.0, 12);
     let volume_mm3 = surface(&[some.clone()]).volume_mm3();
     for triangle in some.iter_mut().step_by(7) {
@@ -84,7 +84,7 @@ fn a_body_within_another_is_a_cavity_if_it_faces_against_it() {
             "material beside it"
         );
         assert_eq!(hollow.bodies_meet_at_mm(), None);
-        // A ball in the cavity is a body again.
+        // A ball inside of the cavity is again a body.
         let ball = moved(&ball_triangles(1.0, 20), DVec3::new(1.0, 0.5, 0.0));
         let outer_faces_out = bodies.contains(&outer);
         let filled = surface(&[
@@ -124,7 +124,7 @@ fn cavities_of_what_presses_are_filled() {
 
 #[test]
 fn bodies_that_overlap_are_united() {
-    // Askew, and with faces in the same planes.
+    // Tilted, and with faces in common planes.
     for (size, other) in [
         (2.0, [3.1, 2.9, 3.3]),
         (2.0, [2.0, 0.0, 0.0]),
@@ -197,7 +197,7 @@ fn boxes_that_share_a_face_are_read() {
             }
         }
     }
-    // Where the triangles are the same there is no wall left between them.
+    // Where the triangles are the same, no wall remains between the bodies.
     let joined = surface(&[left.clone(), right.clone()]);
     assert!((distance_mm(&joined, 0.0, 0.0, 0.0) + 2.0).abs() < 1e-12);
     assert_eq!(joined.bodies_meet_at_mm(), None);
@@ -218,7 +218,7 @@ fn nearly_equal_corners_are_welded_and_open_edges_are_not() {
     let welded = surface(&[off.clone()]);
     assert_eq!((welded.vertices_mm().len(), welded.triangles().len()), (8, 12));
     assert!((welded.volume_mm3() - 1000.0).abs() < 0.01);
-    // A gap of 0.05 mm is none.
+    // A gap of 0.05 mm is not closed by welding.
     off[0][0] += DVec3::new(0.05, 0.0, 0.0);
     assert!(matches!(error(&[off]), SurfaceError::NotClosed { .. }));
     let mut open = cube(5.0, [0.0; 3]);
@@ -269,12 +269,13 @@ fn what_encloses_nothing_is_refused() {
     ));
 }
 
-/// A strip around the z axis that is turned so many half turns on its way.
+/// A strip around the z axis that makes this number of half turns on its way.
 fn strip(half_turns: f64) -> Triangles {
     let n = 60;
     let edge = |step: usize, side: f64| {
         let share = (step % n) as f64 / n as f64;
-        // The last step meets the first with its sides exchanged if half a turn is left.
+        // With an odd number of half turns, the sides of the last step are exchanged where it meets
+        // the first.
         let side = if step == n && half_turns.fract() == 0.0 && half_turns as i32 % 2 == 1 {
             -side
         } else {
@@ -306,7 +307,7 @@ fn klein_bottle() -> Triangles {
             around % m
         };
         let angle = TAU * around as f64 / m as f64;
-        // Narrow at the seam, where it meets itself.
+        // The tube is narrow at the seam, where it meets itself.
         let out = DVec2::from_angle(TAU * if step == n { 0.0 } else { share });
         (out * (8.0 + 2.0 * angle.cos())).extend(2.0 * angle.sin())
     };
@@ -350,7 +351,7 @@ fn a_body_that_runs_through_itself_is_refused() {
         matches!(eight, SurfaceError::SelfOverlap { body: 0, share, .. } if share > 0.01),
         "{eight}"
     );
-    // Two cones that meet in a point between them, one of which is inside out.
+    // Two cones that meet at a common tip; one of them is inside out.
     let rim = |step: usize, z: f64| (2.0 * DVec2::from_angle(TAU * (step % 24) as f64 / 24.0)).extend(z);
     let mut glass: Triangles = Vec::new();
     for step in 0..24 {

@@ -1,4 +1,4 @@
-//! Distances of indenters: closed forms, and what every distance has to obey.
+//! Distances of indenters: closed forms, and properties that every distance must have.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -48,7 +48,7 @@ fn shapes(edge_radius_mm: f64) -> Vec<Shape> {
     ]
 }
 
-/// Whether a point is in the sharp shape, straight from its definition.
+/// Whether a point is in the sharp shape, by the definition of the shape.
 fn is_in(shape: &Shape, p: DVec3) -> bool {
     let within = |height: f64| (0.0..=height).contains(&p.z);
     let from_axis = p.truncate().length();
@@ -138,7 +138,7 @@ proptest! {
 
     #[test]
     fn rounding_only_takes_away(p in near(), which in 1..6usize, edge in 0.0..1.4f64) {
-        // But from an X, whose hollow corners it fills.
+        // Except for an X, whose concave corners are filled by the rounding.
         prop_assume!(!matches!(shapes(0.0)[which], Shape::X { .. }));
         let (sharp, round) = (field(&shapes(0.0)[which]), field(&shapes(edge)[which]));
         prop_assert!(round.signed_distance(p).distance_mm >= sharp.signed_distance(p).distance_mm - 1e-9);
@@ -161,7 +161,7 @@ fn the_origin_is_the_point_of_first_touch() {
             let field = field(&shape);
             let (low, _) = field.bounds_mm();
             assert!(low.z.abs() < 1e-12, "{shape:?}: {low}");
-            // A ring touches with its rim; everything else at the origin.
+            // A ring touches with its rim; the other shapes touch at the origin.
             let at = if matches!(shape, Shape::Ring { .. }) {
                 DVec3::X * 4.5
             } else {
@@ -193,7 +193,7 @@ fn bounds_touch_the_surface() {
             let field = field(&shape);
             let (low, high) = field.bounds_mm();
             let middle = 0.5 * (low + high);
-            // The wedge is widest a little below its base when rounded.
+            // A rounded wedge is widest a little below its base.
             let level = if matches!(shape, Shape::Wedge { .. }) {
                 high.z - edge
             } else {
@@ -259,7 +259,7 @@ fn closed_forms() {
         height_mm: 4.0,
         edge_radius_mm: 0.5,
     };
-    // The hollow corner's centre is half a millimetre beside both bars.
+    // The centre of the rounding of a concave corner is half a millimetre beside both bars.
     near(distance(round, [1.5 * 2f64.sqrt(), 0.0, 2.0]), 0.5);
     let ridge = Shape::Wedge {
         angle_rad: 1.0,
@@ -267,7 +267,7 @@ fn closed_forms() {
         height_mm: 4.0,
         edge_radius_mm: 0.5,
     };
-    // Beside the ridge it is a cylinder of the edge's radius.
+    // Near the ridge, the shape is a cylinder with the radius of the edge.
     near(distance(ridge, [0.0, 0.0, -0.5]), 0.5);
 }
 

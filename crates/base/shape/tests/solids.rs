@@ -1,4 +1,4 @@
-//! Gels and the shell around them: what their distances, tops and volumes have to obey.
+//! Gels and the shell around them: properties that their distances, tops and volumes must have.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -59,8 +59,8 @@ proptest! {
         let solid = &solids()[which];
         let found = distance(solid, p);
         let rest = distance(solid, p - found.gradient * found.distance_mm).distance_mm;
-        // Outside a block's ridges the distance is a lower bound: the step may end before the surface, never
-        // beyond.
+        // Outside of a block's ridges the distance is a lower bound: the step may end before the
+        // surface, but never beyond it.
         let is_exact = found.distance_mm <= 0.0 || which == 2;
         prop_assert!(rest > -1e-7 && (rest < 1e-7 || !is_exact), "{:?} leaves {}", found, rest);
     }
@@ -93,8 +93,8 @@ fn a_domes_inside_is_as_deep_as_a_dense_sampling_of_its_top_says() {
             .map(|sample| sample.distance(p))
             .fold(f64::INFINITY, f64::min);
         let found_mm = -distance(solid, p).distance_mm;
-        // A lattice of 0.02 mm misses the closest point by at most 0.015 mm, which is 0.0003 mm in the
-        // distance.
+        // The closest point of a lattice of 0.02 mm is at most 0.015 mm from the true one, which
+        // changes the distance by 0.0003 mm.
         assert!(
             found_mm <= sampled_mm + 1e-9 && sampled_mm - found_mm < 3e-4,
             "{found_mm}, sampled {sampled_mm}, at {p}"
@@ -146,6 +146,6 @@ fn impossible_gels_name_the_field() {
     assert_eq!(dome(&|dome| dome.drop_x_mm = [0.0, 4.5]), "drop_x_mm[1]");
     assert!(solids().iter().all(|solid| solid.validate().is_ok()));
     assert_eq!(field(Solid::Stl(SurfaceFile::new(""))), "path");
-    // In metres.
+    // The size is given in metres by mistake.
     assert_eq!(field(block([0.034, 0.018, 0.0085], 0.0)), "size_mm[0]");
 }

@@ -1,4 +1,4 @@
-//! STL files as programs write them, and files that only look like it.
+//! STL files as programs write them, and files that only look like STL files.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -32,7 +32,7 @@ fn assert_is_the_box(name: &str, bytes: &[u8]) {
     );
 }
 
-/// A text file whose solid has this name, in some encoding.
+/// A text file whose solid has this name, in an arbitrary encoding.
 fn named(name: &[u8]) -> Vec<u8> {
     let text = good();
     let facets = text
@@ -138,7 +138,10 @@ fn what_is_no_stl_file_is_called_by_its_name() {
         (b"\x1f\x8b\x08\x00\x00\x00", "is a gzip file"),
         (b"PK\x03\x04\x14\x00", "is a ZIP or 3MF file"),
         (b"ply\nformat ascii 1.0\nelement vertex 8\n", "is a PLY file"),
-        (b"# Blender\n\n# www\no Cube\nv 1 1 -1\n", "is no whole STL file"),
+        (
+            b"# Blender\n\n# www\no Cube\nv 1 1 -1\n",
+            "is not a complete STL file",
+        ),
         (
             b"# Blender\nmtllib cube.mtl\no Cube\nv 1 1 -1\n",
             "is an OBJ file",
@@ -152,16 +155,19 @@ fn what_is_no_stl_file_is_called_by_its_name() {
         (b"solid", "has 0 triangles"),
         (b"SOLID nothing\nENDSOLID nothing\n", "has 0 triangles"),
         (&[0; 84], "has 0 triangles"),
-        (&[0; 83], "is no whole STL file: has 83 bytes"),
-        (&[0xff; 400], "as a binary one it would have 214748364834"),
+        (&[0; 83], "is not a complete STL file: it has 83 bytes"),
+        (&[0xff; 400], "a binary one would have 214748364834"),
         (
             b"solid a\nfacet normal 0 0 1\nouter loop\n",
             "line 4: the text ends within a facet",
         ),
-        (b"solid a\nvertex 1 2 3\n", "line 2: a vertex stands in no facet"),
+        (
+            b"solid a\nvertex 1 2 3\n",
+            "line 2: a vertex is outside of a facet",
+        ),
         (
             b"solid a\nfacet\nfacet\n",
-            "line 3: the facet before has no `endfacet`",
+            "line 3: the previous facet has no `endfacet`",
         ),
         (
             b"solid a\nfacet\nvertex 1 2 3\nvertex 1 2 4\nendfacet",
@@ -222,7 +228,7 @@ fn a_size_or_place_that_is_not_in_mm_is_said_with_the_remedy() {
     }
     let far = scaled(1.0, DVec3::X * 1e6).unwrap_err().problem_and_remedy();
     assert!(far.0.contains("expected within 1 m of its origin"), "{far:?}");
-    // One axis is enough: a plate of 200 mm in metres.
+    // One axis is enough for an error: a plate of 200 mm, given in metres.
     let plate = ascii(&box_triangles(DVec3::new(0.1, 0.1, 0.002)));
     assert!(matches!(read(plate.as_bytes()), Err(SurfaceError::Extent(_))));
     let in_metres = ascii(&box_triangles(HALF_MM * 1e-3));

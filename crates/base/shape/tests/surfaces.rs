@@ -1,4 +1,4 @@
-//! Triangle surfaces against the shapes that they are made after.
+//! Triangle surfaces, compared with the shapes that they approximate.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -40,7 +40,7 @@ proptest! {
     fn a_ball_of_triangles_is_nearly_a_ball(p in near()) {
         let (radius_mm, n) = (3.0, 40);
         let found = FINE_BALL.signed_distance(p);
-        // Facets lie inside the ball by less than the sagitta of their diagonal.
+        // Facets lie inside of the ball by less than the sagitta of their diagonal.
         let sagitta_mm = radius_mm * (1.0 - (PI / f64::from(n) / 2f64.sqrt()).cos());
         let error_mm = found.distance_mm - (p.length() - radius_mm);
         prop_assert!(error_mm > -1e-12 && error_mm < 1.01 * sagitta_mm, "{} mm off, sagitta {}", error_mm, sagitta_mm);
@@ -103,7 +103,8 @@ fn binary_and_text_files_hold_the_same() {
     let from_text = TriangleSurface::from_stl(ascii(&rounded.collect::<Vec<_>>()).as_bytes(), 1.0).unwrap();
     assert_eq!(from_binary.vertices_mm(), from_text.vertices_mm());
     assert_eq!(from_binary.triangles(), from_text.triangles());
-    // Caps have a triangle of no area in each quadrilateral, which is left out: 2 · 24 · 12 less 2 · 24.
+    // Caps have a triangle without area in each quadrilateral, which is left out: 2 · 24 · 12 less
+    // 2 · 24.
     assert_eq!(from_binary.triangles().len(), 528);
 }
 
@@ -114,7 +115,7 @@ fn broken_files_say_what_is_wrong() {
     let bytes = binary(&good);
     for length in 1..bytes.len() {
         let found = error(&bytes[..length]);
-        // Its comment alone is a text without triangles.
+        // The comment of the binary header alone is a text without triangles.
         let expected = match length {
             ..=81 => matches!(found, SurfaceError::Empty { .. } | SurfaceError::Length { .. }),
             _ => matches!(found, SurfaceError::Length { .. }),
@@ -139,7 +140,7 @@ fn broken_files_say_what_is_wrong() {
     let wrong = error(text.replacen("vertex", "vertices", 1).as_bytes());
     assert_eq!(
         wrong.to_string(),
-        "line 4: `vertices` has no place in an STL file"
+        "line 4: `vertices` is not expected in an STL file"
     );
     let short = error(text.replacen("vertex -1", "vertex", 1).as_bytes());
     assert_eq!(short.to_string(), "line 4: a vertex needs three numbers");

@@ -1,4 +1,4 @@
-//! What tells contents apart.
+//! SHA-256 digests of contents.
 
 use std::fmt;
 use std::fs::File;
@@ -11,21 +11,21 @@ use sha2::{Digest as _, Sha256};
 
 use crate::StoreError;
 
-/// A SHA-256. As text it has 64 hexadecimal digits.
+/// A SHA-256 digest. As text it has 64 hexadecimal digits.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Digest([u8; 32]);
 
-/// Bytes of a file that are read at a time.
+/// Number of bytes of a file that are read at a time.
 const AT_A_TIME: usize = 1 << 16;
 
 impl Digest {
-    /// Of bytes.
+    /// The digest of bytes.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         Self(Sha256::digest(bytes).into())
     }
 
-    /// Of a file's bytes.
+    /// The digest of the bytes of a file.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -40,15 +40,15 @@ impl Digest {
         }
     }
 
-    /// Of a value, written as JSON with the fields of each struct in alphabetical order.
+    /// The digest of a value, written as JSON with the fields of each struct in alphabetical order.
     ///
     /// # Errors
-    /// A value that JSON has no form for.
+    /// The value cannot be written as JSON.
     pub fn of_value(value: &impl Serialize) -> Result<Self, serde_json::Error> {
         Ok(Self::of(&serde_json::to_vec(&serde_json::to_value(value)?)?))
     }
 
-    /// The first twelve digits: enough for the names of files in one folder.
+    /// The first twelve digits, enough for the names of files in one folder.
     #[must_use]
     pub fn short(&self) -> String {
         self.to_string()[..12].to_owned()
@@ -67,9 +67,9 @@ impl fmt::Debug for Digest {
     }
 }
 
-/// A text that is no SHA-256.
+/// A text that is not a SHA-256 digest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("is no SHA-256: expected 64 hexadecimal digits")]
+#[error("is not a SHA-256 digest: expected 64 hexadecimal digits")]
 pub struct NoDigest;
 
 impl FromStr for Digest {

@@ -1,9 +1,9 @@
-//! What can go wrong with files that are kept.
+//! Errors of files that are kept.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What is wrong, and where.
+/// What is wrong, and with which file or folder.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
@@ -17,7 +17,7 @@ pub enum StoreError {
         /// What the operating system says.
         source: io::Error,
     },
-    /// A file is not what was written.
+    /// A file does not contain what was written to it.
     #[error("{} is damaged", path.display())]
     Damaged {
         /// The file.
@@ -25,47 +25,47 @@ pub enum StoreError {
         /// What is wrong with it.
         source: serde_json::Error,
     },
-    /// Something could not be written as JSON.
+    /// A value could not be written as JSON.
     #[error("writing {what} as JSON")]
     Json {
-        /// A file, or the name of an input.
+        /// The file, or the name of an input.
         what: String,
         /// Why.
         source: serde_json::Error,
     },
     /// Another program works in the folder.
     #[error(
-        "{} is in use by another program{by}; wait until that has ended, or give another folder",
+        "{} is in use by another program{by}; wait until it has ended, or give another folder",
         folder.display()
     )]
     InUse {
         /// The folder.
         folder: PathBuf,
-        /// Who says to be at work there: ` (process 12)`, or nothing.
+        /// The process that works there, according to its own entry: ` (process 12)`, or empty.
         by: String,
     },
     /// A folder has contents that were made from something else.
-    #[error("{} holds what was made from another {differences}; give another folder", folder.display())]
+    #[error("{} has contents that were made from another {differences}; give another folder", folder.display())]
     OtherContents {
         /// The folder.
         folder: PathBuf,
         /// Names of the inputs that differ.
         differences: String,
     },
-    /// What a stage needs is not there, or is not as its inputs say.
+    /// A required stage does not exist, or does not agree with its inputs.
     #[error(transparent)]
     NotCurrent(#[from] NotCurrent),
 }
 
 impl StoreError {
-    /// An error of the operating system with a file.
+    /// Makes an error of a file from an error of the operating system.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }
     }
 }
 
-/// A stage is not there, or is not as its inputs say.
+/// A stage that does not exist, or does not agree with its inputs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: the stage {why}; make it with `{made_by}`", folder.display())]
 pub struct NotCurrent {

@@ -1,4 +1,4 @@
-//! A folder under a temporary name.
+//! A folder that is filled under a temporary name.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use crate::StoreError;
 use crate::partial::partial_path;
 
-/// A folder that is being filled as `<name>.partial`. Nobody else may fill it meanwhile: see [`Owner`](crate::Owner).
+/// A folder that is being filled as `<name>.partial`. Nobody else may fill it at the same time: see
+/// [`Owner`](crate::Owner).
 #[derive(Debug)]
 pub struct PartialFolder {
     partial: PathBuf,
@@ -15,10 +16,10 @@ pub struct PartialFolder {
 }
 
 impl PartialFolder {
-    /// Starts a folder that will be called `path`; what a killed program left of it is removed.
+    /// Starts a folder that will be called `path`. What a killed program left of it is removed.
     ///
     /// # Errors
-    /// What the system says.
+    /// Those of the operating system.
     pub fn create(path: &Path) -> Result<Self, StoreError> {
         let folder = Self::take_up(path);
         remove(&folder.partial)?;
@@ -26,7 +27,7 @@ impl PartialFolder {
         Ok(folder)
     }
 
-    /// The folder that will be called `path`, with what a killed program left of it.
+    /// The folder that will be called `path`, including what a killed program left of it.
     pub(crate) fn take_up(path: &Path) -> Self {
         Self {
             partial: partial_path(path),
@@ -34,19 +35,20 @@ impl PartialFolder {
         }
     }
 
-    /// Where it is filled.
+    /// The path of the partial folder: where to write.
     #[must_use]
-    #[allow(clippy::misnamed_getters)] // that is where to write
+    #[allow(clippy::misnamed_getters)] // this is where to write
     pub fn path(&self) -> &Path {
         &self.partial
     }
 
-    /// Gives the folder its name, in place of what had it before. A program that is killed meanwhile leaves the new folder or the old one, or none.
+    /// Gives the folder its name, in place of the folder that had the name before. If the program
+    /// is killed during this, the new folder, the old one or neither is there.
     ///
     /// # Errors
-    /// What the system says.
+    /// Those of the operating system.
     pub fn finish(self) -> Result<(), StoreError> {
-        // A folder cannot be renamed onto one that has files: the old one gets out of the way first.
+        // A folder cannot be renamed onto one that has files, so the old one is renamed first.
         let old = self.path.with_added_extension("old");
         remove(&old)?;
         match fs::rename(&self.path, &old) {
@@ -60,7 +62,7 @@ impl PartialFolder {
     }
 }
 
-/// Removes a folder, or a file in its place, if it is there.
+/// Removes a folder, or a file of that name, if it exists.
 pub(crate) fn remove(path: &Path) -> Result<(), StoreError> {
     let removed = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -86,13 +88,13 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("model");
         fill(&path, "one");
-        // Killed while it was filled, and while the old one was removed.
+        // The program was killed while it filled the folder, and while it removed the old one.
         fs::create_dir_all(root.path().join("model.partial/half")).unwrap();
         fs::create_dir_all(root.path().join("model.old/half")).unwrap();
         fill(&path, "two");
         assert_eq!(fs::read_to_string(path.join("a")).unwrap(), "two");
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
-        // Killed between the two renames.
+        // The program was killed between the two renames.
         fs::rename(&path, root.path().join("model.old")).unwrap();
         fill(&path, "three");
         assert_eq!(fs::read_to_string(path.join("a")).unwrap(), "three");

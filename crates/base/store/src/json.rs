@@ -11,7 +11,7 @@ use crate::{StoreError, write_whole};
 /// Reads a JSON file.
 ///
 /// # Errors
-/// A file that cannot be read, or that holds something else.
+/// The file cannot be read, or contains something else.
 pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, StoreError> {
     let bytes = fs::read(path).map_err(StoreError::file("reading", path))?;
     serde_json::from_slice(&bytes).map_err(|source| StoreError::Damaged {
@@ -20,10 +20,11 @@ pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, StoreError> {
     })
 }
 
-/// Writes a value as indented JSON, whole or not at all, in a folder that may not exist yet.
+/// Writes a value as indented JSON; the file appears complete or not at all. Its folder is created
+/// if it does not exist.
 ///
 /// # Errors
-/// A value that JSON has no form for; a file that cannot be written.
+/// The value cannot be written as JSON, or the file cannot be written.
 pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), StoreError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|source| StoreError::Json {
         what: path.display().to_string(),
@@ -33,10 +34,10 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), StoreError>
     write_file(path, &bytes)
 }
 
-/// Writes a file whole or not at all, in a folder that may not exist yet.
+/// Writes a file that appears complete or not at all. Its folder is created if it does not exist.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// The file cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder {

@@ -1,4 +1,4 @@
-//! Values in files, each under the key of all that it is made from.
+//! Values in files, each under the key of everything that it is made from.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -10,33 +10,34 @@ use serde_json::value::RawValue;
 
 use crate::{Digest, MadeFrom, StoreError, write_file};
 
-/// Characters of a label in the name of a file.
+/// Largest number of characters of a label in the name of a file.
 const LABEL_LENGTH: usize = 80;
 
-/// How a value is made. The fields of the struct are all that it depends on: [`make`](Self::make) has nothing else, and all of them are in the key. So none
-/// may be left out when the struct is written.
+/// How a value is made. The fields of the struct are all inputs that the value depends on:
+/// [`make`](Self::make) gets nothing else, and all fields are in the key. So no field may be left
+/// out when the struct is serialized.
 pub trait Recipe: Serialize {
-    /// What is made.
+    /// The value that is made.
     type Value: Serialize + DeserializeOwned;
     /// What can go wrong.
     type Error: From<StoreError>;
 
-    /// A few words about the value, for people who look at the names of files.
+    /// A few words about the value, which become part of the name of its file.
     fn label(&self) -> String;
 
     /// Makes the value.
     ///
     /// # Errors
-    /// Those of the work.
+    /// Those of the computation.
     fn make(&self) -> Result<Self::Value, Self::Error>;
 }
 
-/// A value, from its file or made now.
+/// A value that was read from its file or was made now.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept<T> {
     /// The value.
     pub value: T,
-    /// Why it was made again although there was a file, in words: who works should hear it.
+    /// Why the value was made again although there was a file, in words. The user should see it.
     pub made_again: Option<String>,
 }
 
@@ -50,7 +51,7 @@ pub struct Store {
 #[derive(Serialize)]
 struct Written<'a, T> {
     made_from: &'a MadeFrom,
-    /// Of the value's text.
+    /// Digest of the value's JSON text.
     sha256: Digest,
     value: &'a T,
 }
@@ -64,7 +65,7 @@ struct Read<'a> {
 }
 
 impl Store {
-    /// Values of one build of a program in a folder, which need not be there yet.
+    /// The values of one build of a program, in a folder that may not exist yet.
     #[must_use]
     pub fn new(folder: &Path, program: &str) -> Self {
         Self {
@@ -73,10 +74,11 @@ impl Store {
         }
     }
 
-    /// The value of a recipe: from its file, or made now and kept. A file that was damaged is made again.
+    /// The value of a recipe: read from its file, or made now and written to its file. If the file
+    /// is damaged, the value is made again.
     ///
     /// # Errors
-    /// Those of the recipe; a file that cannot be read or written.
+    /// Those of the recipe; the file cannot be read or written.
     pub fn get<R: Recipe>(&self, recipe: &R) -> Result<Kept<R::Value>, R::Error> {
         let made_from = MadeFrom::of(&self.program, recipe)?;
         let path = self.path(&recipe.label(), &made_from);
@@ -122,17 +124,17 @@ fn written(value: &impl Serialize, made_from: &MadeFrom) -> Result<Vec<u8>, serd
     })
 }
 
-/// The value in a file, or what is wrong with it.
+/// The value in a file, or what is wrong with the file.
 fn value_of<T: DeserializeOwned>(bytes: &[u8], made_from: &MadeFrom) -> Result<T, &'static str> {
     let damaged = "is damaged";
     let read: Read<'_> = serde_json::from_slice(bytes).map_err(|_| damaged)?;
     if read.made_from != *made_from {
-        return Err("is of other inputs than its name says");
+        return Err("was made from other inputs than its name says");
     }
     if Digest::of(read.value.get().as_bytes()) != read.sha256 {
         return Err(damaged);
     }
-    serde_json::from_str(read.value.get()).map_err(|_| "is of another program")
+    serde_json::from_str(read.value.get()).map_err(|_| "was made by another version of the program")
 }
 
 #[cfg(test)]

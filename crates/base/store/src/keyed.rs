@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{Digest, StoreError};
 
-/// A value that many recipes share, with its digest. It is written as that.
+/// A value that many recipes share, with its digest. It serializes as the digest.
 #[derive(Clone, Copy, Debug)]
 pub struct Keyed<T> {
     value: T,
@@ -14,10 +14,10 @@ pub struct Keyed<T> {
 }
 
 impl<T: Serialize> Keyed<T> {
-    /// Takes the digest of all that the value is written as.
+    /// Takes the digest of everything that the value serializes to.
     ///
     /// # Errors
-    /// A value that JSON has no form for.
+    /// The value cannot be written as JSON.
     pub fn new(value: T) -> Result<Self, StoreError> {
         let digest = Digest::of_value(&value).map_err(|source| StoreError::Json {
             what: "an input".to_owned(),
@@ -28,23 +28,23 @@ impl<T: Serialize> Keyed<T> {
 }
 
 impl<T> Keyed<T> {
-    /// A value that follows from these bytes alone, such as what a file says.
+    /// A value that depends on these bytes alone, for example on the contents of a file.
     #[must_use]
     pub fn of_bytes(value: T, bytes: &[u8]) -> Self {
         let digest = Digest::of(bytes);
         Self { value, digest }
     }
 
-    /// A value that follows from others alone, which `from` has.
+    /// A value that depends on other values alone, which are in `from`.
     ///
     /// # Errors
-    /// A value that JSON has no form for.
+    /// `from` cannot be written as JSON.
     pub fn from_inputs(value: T, from: &impl Serialize) -> Result<Self, StoreError> {
         let Keyed { digest, .. } = Keyed::new(from)?;
         Ok(Self { value, digest })
     }
 
-    /// What tells it from others.
+    /// The digest that distinguishes the value from others.
     #[must_use]
     pub fn digest(&self) -> Digest {
         self.digest

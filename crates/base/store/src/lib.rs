@@ -1,13 +1,19 @@
-//! Values that are kept in files by all that they are made from, and files and folders that appear whole or not at all.
+//! Keeps computed values in files under a key of everything that they were made from, and writes
+//! files and folders that appear complete or not at all.
 //!
-//! - [`write_whole`] and [`PartialFile`]: a file under `<name>.partial`, renamed when it is complete. If the program is killed meanwhile, what had the name
-//!   before is still there. A power cut may still lose the last files: nothing is forced to the disk.
-//! - [`PartialFolder`]: the same with a folder.
-//! - [`Store`]: values, a file each. What makes one is a [`Recipe`]: a struct whose fields are all that the value depends on, and a method that has
-//!   nothing but these. The key of the file is made of all fields, so an input that is not in the key cannot be used.
-//! - [`Stages`]: folders that are made in the same way, a [`Stage`] each. A stage reads an earlier one through a [`Finished`], which is to be had only of a
-//!   stage that is as its inputs say.
-//! - [`Owner`]: one program at a time works in a folder.
+//! Input: a folder, and a recipe, which is a struct with the inputs of a computation. Output: the
+//! value, read from its file if the same inputs were used before, computed and written otherwise.
+//!
+//! - [`Store`]: values, one file each. A [`Recipe`] makes a value: it is a struct whose fields are
+//!   all inputs that the value depends on, and a method that gets nothing else.
+//! - [`Stages`]: folders that are made in the same way, by a [`Stage`] each. A stage reads an
+//!   earlier one through a [`Finished`], which exists only for a complete stage whose files are
+//!   unchanged.
+//! - [`Keyed`]: an input together with its digest, and [`MadeFrom`]: the digests of all inputs of a
+//!   value.
+//! - [`write_whole`] and [`PartialFile`]: a file is written as `<name>.partial` and renamed when it
+//!   is complete. [`PartialFolder`] is the same for a folder.
+//! - [`Owner`]: the lock of a folder, so that only one program at a time works in it.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;
@@ -16,6 +22,31 @@
 //! assert_eq!(std::fs::read(&path)?, b"{}");
 //! # Ok::<(), std::io::Error>(())
 //! ```
+//!
+//! # How it works
+//!
+//! A kept value is made by a struct, a [`Stage`] or a [`Recipe`], that has only its own fields to
+//! make it from. The key of the value is what these fields serialize to, together with the version
+//! of the program. An input that is not in the key therefore cannot be reached by the code that
+//! makes the value. No field may be left out when the struct is serialized.
+//!
+//! A [`Keyed`] value stands for its content, by a SHA-256 digest: a sensor for its description and
+//! the surfaces that it names, a gel for its sensor and settings, a file for its bytes, a finished
+//! stage for its output files.
+//!
+//! A file or folder whose key differs from the expected one is made again, or is refused with an
+//! error that names the inputs that differ. A kept value has the digest of its own text in its
+//! file: a damaged file is noticed and made again. A stage has a `stage.json` with the digests of
+//! its inputs and of its output files: a stage of which a file was changed is made again as well. A
+//! stage that was killed continues, if the inputs are still the same, with what its partial folder
+//! contains.
+//!
+//! If the program is killed while it writes a file, the previous file of that name is still there.
+//! When it is killed while it replaces a folder, the new folder, the old one or neither is there,
+//! but never a part of one. A power failure can still lose the last files, because nothing is
+//! forced to the disk.
+//!
+//! This crate depends on no other crate of the workspace: it does not know what is in the files.
 
 mod digest;
 mod error;
@@ -45,7 +76,8 @@ pub use stage::{Finished, Outcome, Stage, Stages};
 /// Writes a file under a temporary name and renames it.
 ///
 /// # Errors
-/// What the system says: the folder does not exist, the disk is full. The file that had the name before is left as it was.
+/// Those of the operating system: the folder does not exist, the disk is full. The file that had
+/// the name before is left as it was.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = PartialFile::create(path)?;
     file.write_all(bytes)?;

@@ -1,4 +1,4 @@
-//! What a value is made from.
+//! The inputs that a value is made from.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,16 +11,18 @@ use crate::{Digest, StoreError, read_json, write_json};
 /// The file in which a folder says what its contents are made from.
 const CLAIM: &str = "made_from.json";
 
-/// The inputs of a kept value: the digest of each, by its name. Two values of the same inputs are the same.
+/// The inputs of a kept value: the digest of each, by its name. Values with the same inputs are the
+/// same.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct MadeFrom(BTreeMap<String, Digest>);
 
 impl MadeFrom {
-    /// Each field of `inputs` is an input, and the program is one: another build may compute something else.
+    /// Each field of `inputs` is an input. The program is one more, because another build may
+    /// compute something else.
     ///
     /// # Errors
-    /// A value that JSON has no form for.
+    /// An input cannot be written as JSON.
     pub fn of(program: &str, inputs: &impl Serialize) -> Result<Self, StoreError> {
         let mut made_from = Self::without_program(inputs)?;
         let program = Digest::of(program.as_bytes());
@@ -28,10 +30,10 @@ impl MadeFrom {
         Ok(made_from)
     }
 
-    /// Each field of `inputs` is an input, whatever program works with them.
+    /// Each field of `inputs` is an input; the program is not.
     ///
     /// # Errors
-    /// A value that JSON has no form for.
+    /// An input cannot be written as JSON.
     pub fn without_program(inputs: &impl Serialize) -> Result<Self, StoreError> {
         let failed = |what: &str| {
             let what = what.to_owned();
@@ -50,10 +52,12 @@ impl MadeFrom {
         Ok(Self(parts))
     }
 
-    /// Takes a folder for contents that are made from this, or makes sure that its contents are. It says so in `made_from.json`.
+    /// Reserves a folder for contents that are made from these inputs, or checks that its contents
+    /// are. The inputs are written to `made_from.json` in the folder.
     ///
     /// # Errors
-    /// [`StoreError::OtherContents`] names what differs; a folder that cannot be read or written.
+    /// [`StoreError::OtherContents`] names the inputs that differ; or the folder cannot be read or
+    /// written.
     pub fn claim(&self, folder: &Path) -> Result<(), StoreError> {
         self.check(folder)?;
         let path = folder.join(CLAIM);
@@ -63,7 +67,8 @@ impl MadeFrom {
         write_json(&path, self)
     }
 
-    /// Makes sure that the contents of a folder, if it says what they are made from, are made from this.
+    /// Checks that the contents of a folder are made from these inputs, if the folder has a
+    /// `made_from.json`.
     ///
     /// # Errors
     /// Those of [`claim`](Self::claim).
@@ -83,20 +88,20 @@ impl MadeFrom {
         })
     }
 
-    /// One digest of all.
+    /// One digest of all inputs.
     #[must_use]
     pub fn digest(&self) -> Digest {
         let lines = self.0.iter().map(|(name, digest)| format!("{name} {digest}\n"));
         Digest::of(lines.collect::<String>().as_bytes())
     }
 
-    /// The digest of an input.
+    /// The digest of one input.
     #[must_use]
     pub fn part(&self, name: &str) -> Option<Digest> {
         self.0.get(name).copied()
     }
 
-    /// Names of the inputs that are not the same, in alphabetical order.
+    /// Names of the inputs that differ, in alphabetical order.
     #[must_use]
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let names = self.0.keys().chain(other.0.keys());

@@ -1,4 +1,4 @@
-//! One program at a time works in a folder.
+//! A lock that lets one program at a time work in a folder.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -8,29 +8,30 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use crate::StoreError;
 
-/// The file whose lock says that somebody is at work.
+/// The file whose lock marks the folder as in use.
 const FILE: &str = ".in-use";
 
 /// Folders that this process owns.
 static OWNED: Mutex<BTreeMap<PathBuf, Weak<Lock>>> = Mutex::new(BTreeMap::new());
 
-/// The right to work in a folder, for as long as it lives. Another process that asks for it meanwhile has an error; the operating system takes it back
-/// from a process that is killed. In this process all owners of a folder share it, and take turns.
+/// The right to work in a folder, for as long as the value exists. Another process that asks for it
+/// meanwhile gets an error. When a process is killed, the operating system releases the lock.
+/// Within one process, all owners of a folder share the lock and take turns.
 #[derive(Clone, Debug)]
 pub struct Owner(Arc<Lock>);
 
 #[derive(Debug)]
 struct Lock {
-    /// Its lock goes with it.
+    /// The lock is released when the file is closed.
     _file: File,
     turn: Mutex<()>,
 }
 
 impl Owner {
-    /// Owns a folder, which is made if it is not there.
+    /// Takes the lock of a folder, which is created if it does not exist.
     ///
     /// # Errors
-    /// [`StoreError::InUse`]; a folder that cannot be written.
+    /// [`StoreError::InUse`]; or the folder cannot be written.
     pub fn of(folder: &Path) -> Result<Self, StoreError> {
         fs::create_dir_all(folder).map_err(StoreError::file("creating", folder))?;
         let known_as = folder
@@ -72,13 +73,13 @@ impl Owner {
         Ok(Self(lock))
     }
 
-    /// Waits until no other thread works in the folder.
+    /// Waits until no other thread of this process works in the folder.
     pub fn turn(&self) -> MutexGuard<'_, ()> {
         self.0.turn.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Who says to be at work.
+/// The process that works in the folder, according to its own entry.
 fn whose(file: &mut File) -> String {
     let mut text = String::new();
     match file.read_to_string(&mut text) {
@@ -95,7 +96,7 @@ mod tests {
     #[test]
     fn another_process_is_refused_and_this_one_shares() {
         let folder = tempfile::tempdir().unwrap();
-        // An open file has a lock of its own, as another process would.
+        // A file that is opened again has a lock of its own, like one of another process.
         let open = || {
             OpenOptions::new()
                 .create(true)

@@ -1,13 +1,14 @@
-//! A file under a temporary name.
+//! A file that is written under a temporary name.
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A file that is being written as `<name>.partial`; dropped before [`finish`](PartialFile::finish), it is removed.
+/// A file that is being written as `<name>.partial`. It is removed if it is dropped before
+/// [`finish`](PartialFile::finish).
 #[derive(Debug)]
 pub struct PartialFile {
-    /// `None` once it is renamed.
+    /// `None` after it was renamed.
     file: Option<File>,
     partial: PathBuf,
     path: PathBuf,
@@ -17,7 +18,7 @@ impl PartialFile {
     /// Starts a file that will be called `path`.
     ///
     /// # Errors
-    /// What the system says.
+    /// Those of the operating system.
     pub fn create(path: &Path) -> io::Result<Self> {
         let partial = partial_path(path);
         Ok(Self {
@@ -27,10 +28,10 @@ impl PartialFile {
         })
     }
 
-    /// Gives the file its name, in place of what had it before.
+    /// Gives the file its name, in place of the file that had the name before.
     ///
     /// # Errors
-    /// What the system says; the partial file is then removed.
+    /// Those of the operating system; the partial file is then removed.
     pub fn finish(mut self) -> io::Result<()> {
         drop(self.file.take());
         std::fs::rename(&self.partial, &self.path).inspect_err(|_| remove(&self.partial))
@@ -58,12 +59,13 @@ impl Drop for PartialFile {
     }
 }
 
-/// A partial file that cannot be removed does no harm: it never has the name of a whole one.
+/// An error is ignored: a partial file that stays does no harm, as it never has the name of a
+/// complete one.
 fn remove(partial: &Path) {
     let _ = std::fs::remove_file(partial);
 }
 
-/// `<name>.partial` beside `path`: what a file or a folder is called until it is complete.
+/// `<name>.partial` beside `path`: the name of a file or folder until it is complete.
 pub(crate) fn partial_path(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".partial");

@@ -1,4 +1,4 @@
-//! Folders that are made once, each from all that it depends on.
+//! Folders that are made once, each from all inputs that it depends on.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,48 +10,50 @@ use serde::{Deserialize, Serialize, Serializer};
 use crate::folder::remove;
 use crate::{Digest, MadeFrom, NotCurrent, PartialFolder, StoreError, read_json, write_json};
 
-/// The file that says what a folder was made from.
+/// The file that records what a folder was made from.
 const RECORD: &str = "stage.json";
 
-/// How a folder is made. The fields of the struct are all that its files depend on: [`make`](Self::make) has nothing else, and all of them are in the key. So
-/// none may be left out when the struct is written. An earlier stage is a field of type [`Finished`].
+/// How a folder is made. The fields of the struct are all inputs that its files depend on:
+/// [`make`](Self::make) gets nothing else, and all fields are in the key. So no field may be left
+/// out when the struct is serialized. An earlier stage is a field of type [`Finished`].
 pub trait Stage: Serialize {
-    /// The folder's name.
+    /// Name of the folder.
     const NAME: &'static str;
-    /// What a person does to have it made, such as `twintac train`.
+    /// What a user runs to make the stage, such as `twintac train`.
     const MADE_BY: &'static str;
-    /// Who hears how the work goes.
+    /// Receives the progress of the work.
     type Follower: ?Sized;
     /// What can go wrong.
     type Error: From<StoreError>;
 
-    /// Fills the folder. What a killed program had put there from the same inputs is still there.
+    /// Fills the folder. It may already contain what a killed program made from the same inputs.
     ///
     /// # Errors
     /// Those of the work.
     fn make(&self, folder: &Path, follower: &Self::Follower) -> Result<(), Self::Error>;
 }
 
-/// Whether a stage ran or was already there.
+/// Whether a stage ran or already existed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Its inputs had changed, or it had never run.
+    /// It ran: its inputs had changed, or it had never run.
     Ran,
-    /// It was there.
+    /// It existed.
     Kept,
 }
 
-/// What a finished stage was made from, and what it left: `stage.json`.
+/// What a finished stage was made from, and its output files; written as `stage.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Record {
     made_from: MadeFrom,
-    /// Each file that it left.
+    /// The digest of each output file.
     outputs: BTreeMap<String, Digest>,
-    /// How long it took, s. Differs from run to run, and is no input to anything.
+    /// Duration of the work, s. It differs from run to run, and is not an input of anything.
     wall_time_s: f64,
 }
 
-/// A stage whose folder is whole. It is written as the digests of its files, so that it can be an input.
+/// A stage whose folder is complete. It serializes as the digests of its files, so that it can be
+/// an input of another stage.
 #[derive(Clone, Debug)]
 pub struct Finished {
     folder: PathBuf,
@@ -59,19 +61,19 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// A file of the stage.
+    /// Path of a file of the stage.
     #[must_use]
     pub fn file(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// What it was made from.
+    /// What the stage was made from.
     #[must_use]
     pub fn made_from(&self) -> &MadeFrom {
         &self.record.made_from
     }
 
-    /// How long it took, s.
+    /// Duration of the work, s.
     #[must_use]
     pub fn wall_time_s(&self) -> f64 {
         self.record.wall_time_s
@@ -87,17 +89,18 @@ impl Serialize for Finished {
 /// The stages of a folder, made by one build of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<'a> {
-    /// Where each stage has a folder.
+    /// The folder that contains a folder for each stage.
     pub root: &'a Path,
-    /// What tells one build from another: each may compute something else.
+    /// Text that distinguishes one build from another, because each may compute something else.
     pub program: &'a str,
 }
 
 impl Stages<'_> {
-    /// Makes a stage unless it is there. It is made in `<name>.partial` and renamed. The caller must be the only one at work: see [`Owner`](crate::Owner).
+    /// Makes a stage unless it exists. The stage is made in `<name>.partial`, which is renamed when
+    /// complete. No other program may work in the folder: see [`Owner`](crate::Owner).
     ///
     /// # Errors
-    /// Those of the stage; files that cannot be read or written.
+    /// Those of the stage; a file cannot be read or written.
     pub fn run<S: Stage>(&self, stage: &S, follower: &S::Follower) -> Result<(Outcome, Finished), S::Error> {
         let made_from = MadeFrom::of(self.program, stage)?;
         if let Ok(finished) = self.finished_from::<S>(&made_from) {
@@ -125,18 +128,19 @@ impl Stages<'_> {
         Ok((Outcome::Ran, Finished { folder, record }))
     }
 
-    /// A stage that is there, made from these inputs by this program.
+    /// The existing stage, if this program made it from these inputs.
     ///
     /// # Errors
-    /// [`StoreError::NotCurrent`] says which inputs are not the same; inputs that JSON has no form for.
+    /// [`StoreError::NotCurrent`] names the inputs that differ; or the inputs cannot be written as
+    /// JSON.
     pub fn current<S: Stage>(&self, stage: &S) -> Result<Finished, StoreError> {
         Ok(self.finished_from::<S>(&MadeFrom::of(self.program, stage)?)?)
     }
 
-    /// A stage of this kind that is there with its files as it left them, whatever it was made from.
+    /// An existing stage whose files are as it left them, whatever it was made from.
     ///
     /// # Errors
-    /// [`NotCurrent`].
+    /// [`NotCurrent`]: there is no such stage, or its files were changed.
     pub fn finished(&self, name: &str, made_by: &'static str) -> Result<Finished, NotCurrent> {
         let folder = self.root.join(name);
         let not_current = |why: &str| NotCurrent {
@@ -147,7 +151,7 @@ impl Stages<'_> {
         if !folder.exists() {
             return Err(not_current("was not made yet"));
         }
-        let record: Record = read_json(&folder.join(RECORD)).map_err(|_| not_current("is not whole"))?;
+        let record: Record = read_json(&folder.join(RECORD)).map_err(|_| not_current("is incomplete"))?;
         if !digests(&folder).is_ok_and(|files| files == record.outputs) {
             return Err(not_current("has files that were changed since it was made"));
         }
@@ -168,7 +172,7 @@ impl Stages<'_> {
     }
 }
 
-/// The digest of each file of a folder but the record.
+/// The digest of each file of a folder, except for the record.
 fn digests(folder: &Path) -> Result<BTreeMap<String, Digest>, StoreError> {
     let mut files = BTreeMap::new();
     let mut pending = vec![folder.to_owned()];
@@ -207,7 +211,7 @@ mod tests {
         type Follower = AtomicBool;
         type Error = StoreError;
 
-        /// Fails half-way if the follower says so.
+        /// Fails half-way if `fails` is set.
         fn make(&self, folder: &Path, fails: &AtomicBool) -> Result<(), StoreError> {
             if !folder.join("begun").exists() {
                 write_file(&folder.join("begun"), self.text.as_bytes())?;

@@ -1,8 +1,9 @@
-//! Text that stands in a page of Markdown.
+//! Text in a page of Markdown.
 
 use crate::visible;
 
-/// The text as one line of Markdown that shows it letter by letter: no tags, links, cells or emphasis come of it.
+/// The text as one line of Markdown that shows each character literally: it makes no tags, links,
+/// table cells or emphasis.
 #[must_use]
 pub fn markdown(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -19,7 +20,7 @@ pub fn markdown(text: &str) -> String {
     shown
 }
 
-/// The text as a block of code, of a language that its reader may colour; whatever it has, it does not end the block.
+/// The text as a block of code. `language` may be empty. Nothing in the text ends the block.
 #[must_use]
 pub fn fenced(language: &str, text: &str) -> String {
     let runs = text.split(|letter| letter != '`').map(str::len);

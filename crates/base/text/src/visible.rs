@@ -1,10 +1,11 @@
-//! Text without what steers a terminal.
+//! Text without control characters for a terminal.
 
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// The text with each control character, but for line breaks and tabs, as `\u001b`, and each that changes the direction of writing: what
-/// is printed then looks as it is, and JSON means the same.
+/// The text with control characters (except for line breaks and tabs) and characters that change
+/// the direction of writing replaced by escapes such as `\u001b`. Printed text then looks like what
+/// it is. JSON keeps its meaning.
 #[must_use]
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.contains(steers) {
@@ -13,7 +14,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     let mut shown = String::with_capacity(text.len() + 8);
     for letter in text.chars() {
         if steers(letter) {
-            let _ = write!(shown, "\\u{:04x}", u32::from(letter)); // a string takes everything
+            let _ = write!(shown, "\\u{:04x}", u32::from(letter)); // a string accepts everything
         } else {
             shown.push(letter);
         }

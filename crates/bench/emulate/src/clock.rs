@@ -1,4 +1,4 @@
-//! The one clock that all emulated devices share.
+//! The clock that all emulated devices share.
 
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
@@ -7,13 +7,15 @@ use embedded_hal::delay::DelayNs;
 
 use crate::worker::locked;
 
-/// By how much a sleep may take too long: as long as a transaction on the bus, so that the rest of a wait is not slept through.
+/// By how much a sleep may be too long: about as long as a transaction on the bus. A wait sleeps
+/// until this long before its end, and then spins.
 const OVERSLEEP: Duration = Duration::from_micros(100);
 
-/// The lab's time, in real or in virtual seconds. Clones read the same clock.
+/// The clock of the emulator, in real or in virtual time. Clones read the same clock.
 ///
-/// Real time passes by itself, and waiting takes as long as it says. Virtual time stands still until somebody waits: who waits
-/// longest moves it for all, so that a test of minutes is over at once and always the same.
+/// Real time passes by itself, and waiting takes as long as requested. Virtual time stands still
+/// until somebody waits. The latest end of all waits moves it for all, so a test of minutes is over
+/// at once and always gives the same result.
 #[derive(Clone, Debug)]
 pub struct LabClock(Arc<Time>);
 
@@ -30,7 +32,7 @@ impl LabClock {
         Self(Arc::new(Time::Real(Instant::now())))
     }
 
-    /// A clock of virtual time that stands at zero.
+    /// A clock of virtual time that starts at zero.
     #[must_use]
     pub fn virtual_time() -> Self {
         let (now_ns, moved) = (Mutex::new(0), Condvar::new());
@@ -58,7 +60,8 @@ impl LabClock {
         seconds(self.now_ns())
     }
 
-    /// Waits until that long after the start; virtual time goes there, unless it is past.
+    /// Waits until a time since the start. Virtual time moves to that time, unless it is later
+    /// already.
     pub(crate) fn wait_until_ns(&self, until_ns: u64) {
         match &*self.0 {
             Time::Real(_) => {
@@ -76,12 +79,13 @@ impl LabClock {
         }
     }
 
-    /// Waits so long.
+    /// Waits for `seconds`, s.
     pub fn wait_s(&self, seconds: f64) {
         self.wait_until_ns(self.now_ns() + nanoseconds(seconds));
     }
 
-    /// Lets a server rest until something is due, or for so long of real time: it has a wire to look after as well. Never moves the clock.
+    /// Lets a server rest until `due_ns`, or for at most the real time `at_most`, because a server
+    /// must also look after its sockets. Never moves the clock.
     pub(crate) fn rest_until_ns(&self, due_ns: u64, at_most: Duration) {
         match &*self.0 {
             Time::Real(_) => {
@@ -90,7 +94,7 @@ impl LabClock {
             }
             Time::Virtual { now_ns, moved } => {
                 let now_ns = locked(now_ns);
-                // Whether it was in time or not: the server looks at the clock.
+                // Whether the time was reached does not matter here: the server looks at the clock.
                 let _ = moved.wait_timeout_while(now_ns, at_most, |now_ns| *now_ns < due_ns);
             }
         }
@@ -112,7 +116,7 @@ pub(crate) fn seconds(ns: u64) -> f64 {
 }
 
 pub(crate) fn nanoseconds(seconds: f64) -> u64 {
-    (seconds * 1e9).round() as u64 // what is below zero becomes zero
+    (seconds * 1e9).round() as u64 // below zero becomes zero
 }
 
 #[cfg(test)]

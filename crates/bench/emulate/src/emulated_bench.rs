@@ -1,4 +1,4 @@
-//! All devices together.
+//! All emulated devices together.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use crate::i2c::{Board, BoardSettings};
 use crate::robot::{RobotServer, RobotSettings};
 use crate::{EmulateError, LabClock, Physics, ScheduledFault, Workcell};
 
-/// What the devices are like and what goes wrong with them; as TOML, everything may be left out.
+/// Settings of the devices and their faults. In TOML every field is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct EmulatedBenchSettings {
@@ -18,11 +18,12 @@ pub struct EmulatedBenchSettings {
     pub robot: RobotSettings,
     /// The force sensor.
     pub force: ForceSettings,
-    /// What goes wrong.
+    /// Faults.
     pub faults: Vec<ScheduledFault>,
 }
 
-/// A sensor, a robot and a force sensor in one workcell. Dropped, its sockets close and its threads end.
+/// A sensor, a robot and a force sensor in one workcell. When it is dropped, its sockets close and
+/// its threads end.
 #[derive(Debug)]
 pub struct EmulatedBench {
     /// The sensor's board.
@@ -35,10 +36,11 @@ pub struct EmulatedBench {
 }
 
 impl EmulatedBench {
-    /// Switches the bench on, at the clock's present time.
+    /// Switches the devices on, at the clock's present time.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense, a port that is taken, no thread.
+    /// A setting or a fault that is not valid; a port that is in use; a thread that cannot be
+    /// started.
     pub fn start(
         clock: LabClock,
         physics: impl Physics + 'static,
@@ -55,10 +57,10 @@ impl EmulatedBench {
         })
     }
 
-    /// Something goes wrong, besides what the settings foresee: at once, if the moment is in the past.
+    /// Adds a fault to those of the settings. It begins at once if its moment is in the past.
     ///
     /// # Errors
-    /// A fault that makes no sense.
+    /// A fault that is not valid.
     pub fn inject(&self, fault: ScheduledFault) -> Result<(), EmulateError> {
         fault.check("fault")?;
         match fault.what.wire() {
@@ -69,7 +71,8 @@ impl EmulatedBench {
         Ok(())
     }
 
-    /// Where the robot is and what is felt there: what no device says without its imperfections.
+    /// The true pose of the robot's tool and the true pressures and wrench there, without
+    /// imperfections of the devices.
     #[must_use]
     pub fn workcell(&self) -> &Workcell {
         &self.workcell

@@ -1,18 +1,18 @@
-//! What can go wrong in setting up an emulated bench.
+//! Errors when the emulated devices are set up.
 
-/// Why there is no emulated bench.
+/// Why the devices cannot be emulated.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmulateError {
     /// The operating system gave no socket or no thread.
     #[error("{what}: {source}")]
     System {
-        /// For what.
+        /// What the socket or thread was for.
         what: &'static str,
-        /// What it says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// A setting makes no sense.
+    /// A setting is not valid.
     #[error("`{field}` {problem}")]
     Setting {
         /// The setting, as a dotted path.
@@ -31,12 +31,12 @@ impl EmulateError {
     }
 }
 
-/// That numbers are finite and above zero.
+/// Checks that numbers are finite and above zero.
 pub(crate) fn check_positive(fields: &[(&str, f64)]) -> Result<(), EmulateError> {
     check(fields, "expected a number above zero", |number| number > 0.0)
 }
 
-/// That numbers are finite and not below zero.
+/// Checks that numbers are finite and not below zero.
 pub(crate) fn check_not_negative(fields: &[(&str, f64)]) -> Result<(), EmulateError> {
     check(fields, "expected zero or more", |number| number >= 0.0)
 }

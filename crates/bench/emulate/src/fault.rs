@@ -1,10 +1,10 @@
-//! What goes wrong, and when.
+//! Faults, and when they happen.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{EmulateError, MOST_TAXELS};
 
-/// Something that goes wrong, from a moment on.
+/// A fault that begins at a moment.
 ///
 /// ```
 /// # #[derive(serde::Deserialize)]
@@ -24,92 +24,97 @@ use crate::{EmulateError, MOST_TAXELS};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScheduledFault {
-    /// What goes wrong.
+    /// The fault.
     pub what: FaultKind,
-    /// When.
+    /// When it begins.
     pub begins: Moment,
-    /// For how long, if it is something that lasts; left out: for ever.
+    /// How long it lasts, if it is a lasting fault. If left out, it does not end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lasts: Option<Moment>,
 }
 
-/// A moment, or how long something lasts.
+/// A moment, or a duration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Moment {
-    /// Time of the lab's clock, s.
+    /// Time of the emulator's clock, s.
     TimeS(f64),
-    /// Transactions on the bus, requests to the robot, or datagrams of the force sensor: those of the wire that the fault is on, from 0.
+    /// Number of an event of the connection that the fault is on, counted from 0: transactions on
+    /// the bus, requests to the robot, or datagrams of the force sensor.
     Count(u64),
 }
 
-/// Something that can go wrong. Channels are counted over all switches, by address: those of the first are 0 to 7, of the second 8 to 15.
+/// A fault. Lasting faults have a duration; momentary faults happen once. Channels are counted over
+/// all switches, by address: the first switch has 0 to 7, the second 8 to 15.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum FaultKind {
-    /// Lasts: a channel's barometer, or without a channel every switch, does not acknowledge.
+    /// Lasting: the barometer of a channel does not acknowledge; without a channel, no switch does.
     NoAcknowledge {
         /// The channel.
         channel: Option<u8>,
     },
-    /// Lasts: a channel's data line is shorted to ground, so that the bus is held while the channel is open.
+    /// Lasting: the data line of a channel is shorted to ground, so the bus is held while the
+    /// channel is open.
     Short {
         /// The channel.
         channel: u8,
     },
-    /// Happens: a channel's barometer, or without a channel the first switch, waits for nine clocks and holds the data line until it gets
-    /// them. The switch's reset frees its own side.
+    /// Momentary: the barometer of a channel, or without a channel the first switch, holds the data
+    /// line until it gets nine clocks. The switch's reset frees the switch's own side.
     StuckBus {
         /// The channel.
         channel: Option<u8>,
     },
-    /// Lasts: each transaction takes longer.
+    /// Lasting: each transaction takes longer.
     ClockStretch {
-        /// By how much, s.
+        /// Additional time, s.
         by_s: f64,
     },
-    /// Happens: all switches lose power for a moment, and with it their masks.
+    /// Momentary: all switches lose power briefly, and with it their masks.
     SwitchBrownOut,
-    /// Happens: a channel's barometer loses power for a moment, and with it what it measures and how.
+    /// Momentary: the barometer of a channel loses power briefly, and with it its settings and its
+    /// conversion.
     BarometerBrownOut {
         /// The channel.
         channel: u8,
     },
-    /// Happens: a channel's barometer loses what its factory calibrated it to, if it keeps that where it can be read.
+    /// Momentary: the barometer of a channel loses its factory calibration, if the calibration is
+    /// kept where it can be read.
     LostCalibration {
         /// The channel.
         channel: u8,
     },
-    /// Lasts: conversions of a channel's barometer do not end.
+    /// Lasting: conversions of the barometer of a channel do not end.
     EndlessConversion {
         /// The channel.
         channel: u8,
     },
-    /// Happens: the robot's connections end.
+    /// Momentary: the robot's connections end.
     ConnectionReset,
-    /// Happens: the robot stops with an error.
+    /// Momentary: the robot stops with an error.
     RobotError {
         /// The controller's code.
         code: u8,
     },
-    /// Lasts: the robot carries requests out, and does not answer.
+    /// Lasting: the robot carries out requests, and does not answer.
     UnansweredRequests,
-    /// Lasts: datagrams of the force sensor are lost.
+    /// Lasting: datagrams of the force sensor are lost.
     LostDatagrams,
-    /// Lasts: datagrams arrive late, after those that are not.
+    /// Lasting: datagrams arrive late, after those that are not late.
     LateDatagrams {
-        /// By how much, s.
+        /// Delay, s.
         by_s: f64,
     },
-    /// Lasts: datagrams arrive twice.
+    /// Lasting: datagrams arrive twice.
     DoubledDatagrams,
-    /// Lasts: datagrams arrive in pairs, the second one first.
+    /// Lasting: datagrams arrive in pairs, the second one first.
     ReorderedDatagrams,
-    /// Lasts: the force sensor's gauges are saturated.
+    /// Lasting: the force sensor's gauges are saturated.
     SaturatedForce,
 }
 
-/// Where a fault shows, and whose events count for it.
+/// The connection on which a fault shows, and whose events count for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FaultWire {
     /// The sensor's bus.
@@ -121,7 +126,7 @@ pub(crate) enum FaultWire {
 }
 
 impl FaultKind {
-    /// Where it shows.
+    /// The connection on which it shows.
     #[must_use]
     pub(crate) fn wire(&self) -> FaultWire {
         match self {
@@ -142,7 +147,7 @@ impl FaultKind {
         }
     }
 
-    /// Whether it lasts, rather than happens once.
+    /// Whether it is lasting and not momentary.
     #[must_use]
     pub fn lasts(&self) -> bool {
         !matches!(
@@ -169,7 +174,7 @@ impl FaultKind {
 }
 
 impl ScheduledFault {
-    /// That it makes sense; `field` is its path in errors.
+    /// Checks that the fault is valid. `field` is its path in errors.
     pub(crate) fn check(&self, field: &str) -> Result<(), EmulateError> {
         let bad = |name: &str, problem: &str| Err(EmulateError::setting(format!("{field}.{name}"), problem));
         if self
@@ -201,10 +206,10 @@ impl ScheduledFault {
     }
 }
 
-/// That all faults make sense.
+/// Checks that all faults are valid.
 ///
 /// # Errors
-/// The first that does not, by its field.
+/// The first fault that is not valid, by its field.
 pub fn check_faults(faults: &[ScheduledFault]) -> Result<(), EmulateError> {
     let mut indexed = faults.iter().enumerate();
     indexed.try_for_each(|(index, fault)| fault.check(&format!("faults[{index}]")))

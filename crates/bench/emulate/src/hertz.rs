@@ -1,30 +1,34 @@
-//! A physics in closed form, for tests and for trying things out.
+//! A physics in closed form, for tests and trials.
 
 use glam::DVec3;
 use twintac_rig::{TcpPose, Wrench};
 
 use crate::{MOST_TAXELS, Physics, Sensed};
 
-/// A ball at the tool that presses an elastic half-space from above: Hertz's contact.
+/// Hertz's contact: a ball at the tool presses an elastic half-space from above.
 ///
-/// Force `4/3 E* √R d^(3/2)`, radius of contact `√(R d)`, pressure at the surface `2/π E* √(d/R) √(1 - r²/a²)` (Johnson, Contact Mechanics,
-/// 1985, equations 3.39 and 4.22 to 4.24). Barometers lie at the surface, and read the air's pressure outside the contact.
+/// Force `4/3 E* √R d^(3/2)`, contact radius `a = √(R d)`, contact pressure
+/// `2/π E* √(d/R) √(1 - r²/a²)` at the distance `r` from the axis (Johnson, Contact Mechanics,
+/// 1985, equations 3.39 and 4.22 to 4.24), with the depth `d`. Barometers lie at the surface, and
+/// read the pressure of the air outside the contact.
 #[derive(Clone, Debug)]
 pub struct Hertz {
-    /// Where the barometers are, in the robot's base frame, mm. They lie in one plane, the surface at rest.
+    /// Positions of the barometers in the robot's base frame, mm. They lie in one plane, the
+    /// surface at rest.
     pub taxels_mm: Vec<DVec3>,
-    /// Radius of the ball, mm; its lowest point is the tool centre point.
+    /// Radius `R` of the ball, mm. Its lowest point is the tool centre point.
     pub radius_mm: f64,
-    /// Plane-strain modulus `E / (1 - ν²)` of the half-space, kPa.
+    /// Plane-strain modulus `E* = E / (1 - ν²)` of the half-space, kPa.
     pub modulus_kpa: f64,
-    /// The air's pressure, kPa.
+    /// Pressure of the air, kPa.
     pub air_kpa: f64,
     /// Temperature, °C.
     pub temperature_c: f64,
 }
 
 impl Default for Hertz {
-    /// A ball of 20 mm on 60 kPa, over two rows of four barometers 4 mm apart, 200 mm in front of the robot and 100 mm above its base.
+    /// A ball with a radius of 20 mm on 60 kPa, over two rows of four barometers 4 mm apart, 200 mm
+    /// in front of the robot and 100 mm above its base.
     fn default() -> Self {
         Self {
             taxels_mm: Vec::from_iter((0..8).map(|taxel| {

@@ -1,11 +1,15 @@
-//! The devices of a bench, emulated at the level of their protocols, with faults on demand.
+//! Emulator of the devices of a test setup at the level of their protocols, with faults on demand.
 //!
-//! There are a sensor's barometers behind their I²C switches ([`i2c`]), a robot arm that listens on TCP ([`robot`]), and a force/torque
-//! sensor that streams by UDP ([`force`]). They share one [`LabClock`] and one [`Workcell`]. The workcell moves the robot's tool and asks a
-//! [`Physics`], which the caller provides, what the sensors feel there. [`EmulatedBench`] connects all of them.
+//! The emulated devices are a sensor's barometers behind their I²C switches ([`i2c`]), a robot arm
+//! that listens on TCP ([`robot`]), and a force/torque sensor that streams by UDP ([`force`]). They
+//! share one [`LabClock`] and one [`Workcell`]. The workcell moves the robot's tool and asks a
+//! [`Physics`], which the caller provides, for the pressures and the wrench at the tool's pose.
+//! [`EmulatedBench`] connects all of them. [`Hertz`] is a physics in closed form for tests. A
+//! [`ScheduledFault`] says what goes wrong, and when.
 //!
-//! What devices report depends only on times of the lab's clock and on seeds, and not on how often or in which order they are asked.
-//! In virtual time the whole bench therefore repeats itself bit for bit, if requests come at the same times of that clock.
+//! What devices report depends only on times of the emulator's clock and on seeds, and not on how
+//! often or in which order they are read. In virtual time the whole setup therefore repeats itself
+//! bit for bit, if requests come at the same times of that clock.
 //!
 //! ```
 //! use embedded_hal::i2c::I2c;
@@ -19,7 +23,29 @@
 //! # Ok::<(), twintac_emulate::EmulateError>(())
 //! ```
 //!
-//! Lengths are in mm, forces in N, torques in N mm, pressures in kPa (absolute, as barometers read them), angles in radians.
+//! Lengths are in mm, forces in N, torques in N mm, pressures in kPa (absolute, as barometers read
+//! them), angles in radians.
+//!
+//! # How it works
+//!
+//! - The emulation follows the protocol and not the driver: registers and frames are made from the
+//!   documents of the manufacturers. The drivers, the clients and the robot manufacturer's own
+//!   client (`crates/bench/emulate/tests/manufacturers_client.py`) are tested against it.
+//! - The core of each device has no input and output: bytes go in, bytes come out, with the time of
+//!   its [`LabClock`]. The sockets and threads around it are thin, and end when the value that owns
+//!   them is dropped.
+//! - [`Workcell`] moves the arm and asks the physics in equal time steps on a fixed grid, each step
+//!   once and in order. A physics may therefore depend on its history. Devices read between the
+//!   steps by linear interpolation. What a device reads does not depend on who else has read.
+//! - In virtual time the clock stands still until somebody waits. The I²C bus waits for each of its
+//!   clock periods. In real time the same calls take as long as they state.
+//! - A [`ScheduledFault`] is one entry of a file: what goes wrong, from when on (a time, or an
+//!   event on its connection), and for how long.
+//!
+//! # What it does not depend on
+//!
+//! No solver, no twin and not the emulated gel (`twintac-lab`): what the sensors feel comes through
+//! the trait [`Physics`].
 
 mod clock;
 mod emulated_bench;

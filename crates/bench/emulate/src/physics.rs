@@ -1,14 +1,15 @@
-//! What is felt where the robot presses.
+//! The interface to the physics at the robot's tool.
 
 use twintac_rig::{TcpPose, Wrench};
 
-/// Barometers that a board can have.
+/// Most barometers of a board.
 pub const MOST_TAXELS: usize = 64;
 
-/// What the sensor and the force sensor are exposed to at a moment.
+/// Pressures, temperature and wrench at the sensors at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensed {
-    /// Absolute pressure at each barometer, kPa, in the order of the board's parts; beyond them nobody feels it.
+    /// Absolute pressure at each barometer, kPa, in the order of the board's parts. Entries beyond
+    /// the last part are not used.
     pub taxel_pressures_kpa: [f64; MOST_TAXELS],
     /// Temperature of the barometers, °C.
     pub temperature_c: f64,
@@ -18,15 +19,17 @@ pub struct Sensed {
 
 /// What happens between the robot's tool and the sensor.
 pub trait Physics: Send {
-    /// What is felt with the tool at a pose of the robot's base frame, at a time of the lab's clock, s.
+    /// Pressures, temperature and wrench with the tool at a pose in the robot's base frame, at a
+    /// time of the emulator's clock, s.
     ///
-    /// It is asked in steps of time that are all the same ([`Workcell::STEP_S`](crate::Workcell::STEP_S)), from zero on and each once:
-    /// it may remember what was before. In real time it has to keep up with them: all devices wait meanwhile.
+    /// It is called at equal time steps ([`Workcell::STEP_S`](crate::Workcell::STEP_S)), from zero
+    /// on and once for each: it may depend on earlier steps. In real time it must keep up with the
+    /// steps, because all devices wait meanwhile.
     fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed;
 }
 
 impl Sensed {
-    /// Nothing touches: the same pressure everywhere, kPa, at a temperature, °C.
+    /// Without contact: the same pressure everywhere, kPa, at a temperature, °C.
     #[must_use]
     pub fn untouched(pressure_kpa: f64, temperature_c: f64) -> Self {
         Self {
@@ -36,7 +39,7 @@ impl Sensed {
         }
     }
 
-    /// What lies between this and another, by a fraction from 0 to 1.
+    /// Interpolates between this and another by a fraction from 0 to 1.
     pub(crate) fn mix(&self, other: &Self, fraction: f64) -> Self {
         let between = |one: f64, two: f64| one + fraction * (two - one);
         Self {

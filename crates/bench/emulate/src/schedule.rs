@@ -1,8 +1,8 @@
-//! The faults of a wire, as time goes by.
+//! The faults of one connection over time.
 
 use crate::fault::{FaultKind, FaultWire, Moment, ScheduledFault};
 
-/// The faults of one wire, as its time and its events go by.
+/// The faults of one connection, with their state as time and events pass.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Schedule {
     faults: Vec<(ScheduledFault, Stage)>,
@@ -12,13 +12,13 @@ pub(crate) struct Schedule {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
     Ahead,
-    /// Since a time, s, and an event.
+    /// Active since a time, s, and an event.
     Active(f64, u64),
     Over,
 }
 
 impl Schedule {
-    /// Those of all faults that show on a wire.
+    /// Takes from all faults those that show on a connection.
     pub(crate) fn new(faults: &[ScheduledFault], wire: FaultWire) -> Self {
         let here = faults.iter().filter(|fault| fault.what.wire() == wire);
         Self {
@@ -27,19 +27,19 @@ impl Schedule {
         }
     }
 
-    /// Another fault, for a moment ahead or at once.
+    /// Adds a fault. It begins later or at once.
     pub(crate) fn add(&mut self, fault: ScheduledFault) {
         self.faults.push((fault, Stage::Ahead));
     }
 
-    /// The next event happens: what goes wrong once now.
+    /// Counts the next event. Returns the momentary faults that happen now.
     pub(crate) fn next_event(&mut self, now_s: f64) -> Vec<FaultKind> {
         let happened = self.look(now_s);
         self.count += 1;
         happened
     }
 
-    /// What goes wrong once now, with the next event still ahead.
+    /// Returns the momentary faults that happen now, without counting an event.
     pub(crate) fn look(&mut self, now_s: f64) -> Vec<FaultKind> {
         let mut happened = Vec::new();
         for (fault, stage) in &mut self.faults {
@@ -48,7 +48,8 @@ impl Schedule {
                 Moment::Count(count) => self.count >= count,
             };
             if *stage == Stage::Ahead && is_due {
-                // What begins at a time has lasted since then, however late somebody looks.
+                // A fault that begins at a time has lasted since then, however late this function
+                // is called.
                 let since_s = match fault.begins {
                     Moment::TimeS(time_s) => time_s,
                     Moment::Count(_) => now_s,
@@ -73,7 +74,7 @@ impl Schedule {
         happened
     }
 
-    /// What goes wrong all the while, as of the last look.
+    /// The lasting faults that are active, as of the last call of `look`.
     pub(crate) fn active(&self) -> impl Iterator<Item = FaultKind> {
         let active = self
             .faults
@@ -82,7 +83,7 @@ impl Schedule {
         active.map(|(fault, _)| fault.what)
     }
 
-    /// Whether one of those is this one.
+    /// Whether this fault is active.
     pub(crate) fn has(&self, what: FaultKind) -> bool {
         self.active().any(|active| active == what)
     }

@@ -1,4 +1,4 @@
-//! Where the robot's tool is and what is felt there, moment by moment.
+//! The pose of the robot's tool and the values that the sensors feel there, over time.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -12,23 +12,23 @@ use crate::robot::{Arm, ArmSettings};
 use crate::worker::locked;
 use crate::{LabClock, Physics, Sensed};
 
-/// Steps that are remembered, 2 s: barometers convert, and say what was when they did.
+/// Steps that are kept: 2 s. Barometers report the values at the time of their conversion.
 const MOST_STEPS: usize = 2000;
 const STEP_NS: u64 = 1_000_000;
 
-/// What the bench is like at a moment.
+/// State of the test setup at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation {
-    /// Where the robot's tool is.
+    /// Pose of the robot's tool.
     pub tool: TcpPose,
-    /// What is felt.
+    /// Pressures, temperature and wrench at the sensors.
     pub sensed: Sensed,
 }
 
-/// The robot's arm and the physics around its tool; clones are of the same workcell.
+/// The robot's arm and the physics around its tool. Clones share one workcell.
 ///
-/// It goes on in equal steps, on a grid of times of its own, and is read between them linearly. So what a device reads does not depend on
-/// who else has read, or when.
+/// It advances in equal steps on a fixed time grid, and is interpolated linearly between them. What
+/// a device reads therefore does not depend on who else has read, or when.
 #[derive(Clone)]
 pub struct Workcell {
     clock: LabClock,
@@ -38,7 +38,7 @@ pub struct Workcell {
 struct World {
     arm: Arm,
     physics: Box<dyn Physics>,
-    /// The latest steps; the last one has the number `n_steps`.
+    /// The latest steps. The last one has the number `n_steps`.
     situations: VecDeque<Situation>,
     n_steps: u64,
 }
@@ -47,7 +47,7 @@ impl Workcell {
     /// Time between two steps, s.
     pub const STEP_S: f64 = STEP_NS as f64 * 1e-9;
 
-    /// A workcell whose arm is at rest at a pose. Its time is that of the clock, from zero.
+    /// A workcell whose arm rests at a pose. Its time is that of the clock, from zero.
     #[must_use]
     pub fn new(clock: LabClock, physics: impl Physics + 'static, tool: TcpPose, arm: ArmSettings) -> Self {
         let mut world = World {
@@ -67,13 +67,14 @@ impl Workcell {
         &self.clock
     }
 
-    /// How it is now.
+    /// The present state.
     #[must_use]
     pub fn now(&self) -> Situation {
         self.at_ns(self.clock.now_ns())
     }
 
-    /// How it was at a time of the clock, s; what is longer ago than two seconds is forgotten, and the oldest that is known given instead.
+    /// The state at a time of the clock, s. States older than two seconds are not kept: the oldest
+    /// known state is returned in their place.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Situation {
         self.at_ns(nanoseconds(time_s))
@@ -90,7 +91,7 @@ impl Workcell {
         before.mix(after, (time_ns % STEP_NS) as f64 / STEP_NS as f64)
     }
 
-    /// Lets the arm be told something at a time: it shows from the next step on.
+    /// Gives access to the arm at a time. Changes take effect at the next step.
     pub(crate) fn steer<T>(&self, time_ns: u64, tell: impl FnOnce(&mut Arm) -> T) -> T {
         let mut world = locked(&self.world);
         world.advance(time_ns.div_ceil(STEP_NS));

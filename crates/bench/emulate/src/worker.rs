@@ -6,14 +6,14 @@ use std::thread::JoinHandle;
 
 use crate::EmulateError;
 
-/// A thread that is told to end, and waited for, when this is dropped.
+/// A thread that is told to end, and is waited for, when this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Worker {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// What a thread looks at to see whether to end.
+/// The flag that tells a thread to end.
 #[derive(Clone, Debug)]
 pub(crate) struct Over(Arc<AtomicBool>);
 
@@ -49,12 +49,13 @@ impl Drop for Worker {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            let _ = thread.join(); // one that panicked has said so
+            let _ = thread.join(); // a thread that panicked has reported it
         }
     }
 }
 
-/// What a mutex guards, also after a thread died while it held it: a physics that panics takes its own thread along, and no other.
+/// Locks a mutex, also after a thread died while it held the lock. A physics that panics ends its
+/// own thread and no other.
 pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! All devices at once, on one clock.
+//! All emulated devices together, on one clock.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -10,7 +10,7 @@ use twintac_rig::netft;
 use twintac_rig::xarm::Client;
 use twintac_rig::{BenchClock, NetFtSource, WrenchSource};
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
 
 fn force_client(bench: &EmulatedBench) -> netft::Client {

@@ -1,4 +1,5 @@
-//! Every chip of the drivers' table on an emulated bus: what it reads, how fast, and what its faults are called.
+//! Every chip of the drivers' table on an emulated bus: its readings, its rate, and the names of
+//! its faults.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -9,7 +10,7 @@ use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{FaultKind, LabClock, MOST_TAXELS, Moment, Physics, ScheduledFault, Sensed, Workcell};
 use twintac_rig::TcpPose;
 
-/// Each taxel feels a pressure of its own, and the chips have a temperature that rises.
+/// Each taxel feels its own pressure, and the temperature of the chips rises.
 struct Felt {
     first_kpa: f64,
     step_kpa: f64,
@@ -34,7 +35,7 @@ impl Physics for Felt {
     }
 }
 
-/// Free air, a little more of it on each next taxel.
+/// Free air, with a slightly higher pressure on each next taxel.
 const AIR: Felt = Felt {
     first_kpa: 100.0,
     step_kpa: 0.05,
@@ -43,7 +44,7 @@ const AIR: Felt = Felt {
 
 type Sensor = PhysTac<Bus, LabClock, Box<dyn Fn() -> u64>, MOST_TAXELS>;
 
-/// A board, and the driver of what the description of it says.
+/// A board, and the driver for the description of this board.
 fn on_the_bench(
     described: &[Wired],
     soldered: &[Wired],
@@ -81,7 +82,7 @@ fn eight(chip: Chip) -> Vec<Wired> {
     (0..8).map(|channel| Wired::on_channel(chip, channel)).collect()
 }
 
-/// The noise of a chip as it is usually set, Pa; a little above the data sheet's.
+/// The noise of a chip in its usual setting, Pa, slightly above that of the data sheet.
 fn noise_pa(wired: &Wired) -> f64 {
     let data = wired.chip.data();
     let samples = wired.samples.or(data.usual_samples);
@@ -101,7 +102,8 @@ fn pressures_pa(frame: &Frame<MOST_TAXELS>) -> Vec<Result<f32, Fault>> {
         .collect()
 }
 
-/// That frames read what is felt, in the mean, to a fraction of the chips' noise.
+/// Checks that the mean of the frames equals the true pressures within a fraction of the chips'
+/// noise.
 fn check_readings(wired: &[Wired], sensor: &mut Sensor, felt: &Felt) {
     const FRAMES: usize = 40;
     let mut sums_pa = vec![0.0; wired.len()];
@@ -247,7 +249,7 @@ fn temperature_that_is_converted_apart_is_never_older_than_sixteen_frames() {
     }
 }
 
-/// What becomes of a taxel with a fault from a moment on, in the frames after it, each kind once.
+/// The faults of a taxel in the frames after a fault begins, each kind once.
 fn faults_of(chip: Chip, what: FaultKind, lasts: Option<Moment>) -> Vec<Fault> {
     let begins = Moment::TimeS(1.0);
     let fault = ScheduledFault { what, begins, lasts };
@@ -309,7 +311,8 @@ fn a_chip_whose_conversion_does_not_end_is_stuck() {
     }
 }
 
-/// A chip that lost its power gives no wrong number: either its next sample is as good as any, or it is said to have none.
+/// A chip that lost its power gives no wrong reading: its next sample is as good as any, or it
+/// reports that it has none.
 #[test]
 fn a_chip_that_loses_its_power_gives_no_wrong_number() {
     let power = FaultKind::BarometerBrownOut { channel: 5 };
@@ -321,7 +324,7 @@ fn a_chip_that_loses_its_power_gives_no_wrong_number() {
             "{chip}: {found:?}"
         );
     }
-    // These are set up by what was lost, and say so.
+    // These chips need the settings that were lost, and report the loss.
     for chip in [Chip::Mpl3115a2, Chip::Bmp581, Chip::Bmp585, Chip::Dps310] {
         assert_eq!(faults_of(chip, power, None), [Fault::Restarted], "{chip}");
     }
@@ -330,7 +333,7 @@ fn a_chip_that_loses_its_power_gives_no_wrong_number() {
 #[test]
 fn a_calibration_that_is_lost_is_named_when_the_chip_is_switched_on() {
     let lost = FaultKind::LostCalibration { channel: 5 };
-    let kept_apart = [Chip::Cps135b, Chip::Mpl3115a2, Chip::Lps22hb]; // calibrated inside, where nobody looks
+    let kept_apart = [Chip::Cps135b, Chip::Mpl3115a2, Chip::Lps22hb]; // their calibration is internal and cannot be read
     for chip in Chip::ALL.iter().filter(|chip| !kept_apart.contains(chip)) {
         let fault = ScheduledFault {
             what: lost,
@@ -360,7 +363,7 @@ fn another_chip_at_the_address_is_told_from_the_one_described() {
             };
             let twins = [Chip::Bmp384, Chip::Bmp388];
             if twins.contains(described) && twins.contains(soldered) {
-                continue; // they have one identity, and are read alike
+                continue; // they have one identity and are read in the same way
             }
             let at = |chip: Chip| Wired {
                 address: *shared,

@@ -1,4 +1,5 @@
-//! The client against the emulated force sensor on the loopback, and the sensor alone in virtual time.
+//! The client against the emulated force sensor on the loopback, and the sensor alone in virtual
+//! time.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -14,7 +15,7 @@ use twintac_rig::netft::{
 };
 use twintac_rig::{BenchClock, NetFtSource, RigError, TcpPose, WrenchSource};
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
 
 /// The ball, pressed in by 1 mm.
@@ -30,7 +31,7 @@ fn fault(what: FaultKind, begins: Moment, lasts: Option<Moment>) -> ScheduledFau
     ScheduledFault { what, begins, lasts }
 }
 
-/// What the sensor's page says. A page that a busy machine is late with is asked for again.
+/// The content of the sensor's page. If a busy machine answers late, the page is requested again.
 fn configuration(server: &ForceServer) -> Configuration {
     let host = server.page().to_string();
     (0..30)
@@ -55,7 +56,8 @@ fn streaming(
     std::thread::scope(|scope| {
         let started = scope.spawn(|| client.start(buffered).unwrap());
         while !started.is_finished() {
-            // The first datagram is sent when its records are measured. In virtual time somebody has to wait for them.
+            // The first datagram is sent when its records are measured. In virtual time somebody
+            // has to wait for that.
             std::thread::sleep(Duration::from_millis(100));
             if buffered {
                 clock.wait_s(0.01);
@@ -65,8 +67,8 @@ fn streaming(
     (server, client)
 }
 
-/// The readings of 130 records, of which the client has taken the first as the answer to its request. The clock stands until they are to
-/// be sent, and they all fit into the client's socket.
+/// The readings of 130 records. The client has taken the first one as the answer to its request.
+/// The clock stands still until they are to be sent, and they all fit into the client's socket.
 fn source(faults: &[ScheduledFault]) -> (ForceServer, NetFtSource) {
     let clock = LabClock::virtual_time();
     let (server, client) = streaming(&clock, faults, 250.0, false);
@@ -102,10 +104,10 @@ fn a_bias_takes_the_load_away() {
         force_n: 0.2,
         torque_n_mm: 5.0,
     };
-    // Records from before the bias may wait in the socket of a client that was held up.
+    // Records from before the bias may wait in the socket of a client that was delayed.
     assert!((0..10).any(|_| client.bias(&tolerance).is_ok()));
     client.stop().unwrap();
-    // A thread that is held up may have sent its last datagram after that.
+    // A thread that was delayed may have sent its last datagram after that.
     let is_silent = (0..1000).any(|_| client.receive(Duration::from_millis(20)).unwrap().is_empty());
     assert!(is_silent);
 }
@@ -172,7 +174,8 @@ fn a_page_that_is_not_there_and_a_port_that_is_taken_are_named() {
     );
 }
 
-/// All that a sensor sends in a second of virtual time, asked every so often.
+/// All datagrams that a sensor sends in a second of virtual time, if it is asked at a regular
+/// interval.
 fn second(
     settings: ForceSettings,
     faults: &[ScheduledFault],

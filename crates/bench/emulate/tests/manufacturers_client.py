@@ -1,6 +1,7 @@
 """The manufacturer's own client (PyPI: xarm-python-sdk) against a robot on the loopback.
 
-Arguments: the TCP ports for commands and for normal, rich and development reports. The last line printed is what was seen, as JSON.
+Arguments: the TCP ports for commands and for normal, rich and development reports. The last printed
+line has the observations as JSON.
 """
 
 import json
@@ -12,13 +13,14 @@ from xarm.core.config.x_config import XCONF
 from xarm.x3.report import ReportDataStructure
 
 commands, normal, rich, development = map(int, sys.argv[1:5])
-# Ports are constants of the client. It takes a report port for a command port if it is the next one up.
+# Ports are constants of the client. It takes a report port for a command port if its number is the
+# next higher one.
 XCONF.SocketConf.TCP_CONTROL_PORT = commands
 XCONF.SocketConf.TCP_REPORT_NORM_PORT = normal
 XCONF.SocketConf.TCP_REPORT_RICH_PORT = rich
 XCONF.SocketConf.TCP_REPORT_REAL_PORT = development
 
-# What a report holds it knows by its usual port.
+# The client derives the content of a report from its usual port.
 USUAL_PORTS = {normal: 30001, rich: 30002, development: 30003}
 create = ReportDataStructure.create
 ReportDataStructure.create = lambda port, **settings: create(USUAL_PORTS[port], **settings)
@@ -35,7 +37,7 @@ def note(name, code):
 
 
 def wait_for(condition, within_s=2.0):
-    """Whether a condition comes true."""
+    """Waits until a condition is true. Returns whether it became true in time."""
     until = time.monotonic() + within_s
     while not condition() and time.monotonic() < until:
         time.sleep(0.01)

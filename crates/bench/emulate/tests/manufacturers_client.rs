@@ -1,7 +1,8 @@
-//! The robot as its manufacturer's own client sees it.
+//! The robot, tested with its manufacturer's own client.
 //!
-//! Wants Python with `xarm-python-sdk`, in the interpreter that the variable `TWINTAC_PYTHON` names, or `python3`. If the variable is not
-//! set and the package is not there, the test says so and looks at nothing.
+//! The test needs Python with `xarm-python-sdk`, in the interpreter that the variable
+//! `TWINTAC_PYTHON` names, or `python3`. If the variable is not set and the package is missing, the
+//! test reports this and passes without a check.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // a test that does not run says so
 
@@ -24,7 +25,7 @@ fn the_manufacturers_client_drives_the_robot() {
     }
 
     let mut settings = RobotSettings::default();
-    settings.first_pose.roll_pitch_yaw_rad.x = 3.0; // half a turn has two names
+    settings.first_pose.roll_pitch_yaw_rad.x = 3.0; // half a turn has two representations
     let workcell = Workcell::new(
         LabClock::real(),
         Hertz::default(),

@@ -14,9 +14,9 @@ use twintac_rig::xarm::{
 };
 use twintac_rig::{RigError, TcpPose};
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
-/// How long to look for a report that may not be there.
+/// How long to wait for a report that may not come.
 const GLANCE: Duration = Duration::from_millis(20);
 
 fn workcell(clock: &LabClock) -> Workcell {
@@ -50,7 +50,7 @@ fn reader(robot: &RobotServer, port: ReportPort) -> ReportReader<TcpStream> {
     ReportReader::new(TcpStream::connect(robot.reports(port)).unwrap(), port)
 }
 
-/// The next report of a robot whose clock stands until somebody waits.
+/// The next report of a robot whose clock stands still until somebody waits.
 fn next_while_time_passes(clock: &LabClock, reader: &mut ReportReader<TcpStream>) -> Report {
     let mut next = || {
         clock.wait_s(0.1);
@@ -140,7 +140,8 @@ fn servo_poses_want_servo_mode_and_small_steps() {
     client.call(servo(lower(&pose, 9.9))).unwrap();
     let too_far = client.call(servo(lower(&pose, 20.0)));
     assert_eq!(code_of(too_far), ControllerCode::Error(24));
-    // Latched: it is not set to motion before it is cleaned, and all else says so.
+    // The error is latched: the state cannot be set to motion before the error is cleared, and all
+    // other responses report it.
     assert_eq!(
         code_of(client.set_state(SetState::Motion)),
         ControllerCode::Error(24)
@@ -180,7 +181,7 @@ fn reports_come_at_their_rates_and_say_what_is() {
     let mut commands = client(&robot);
     commands.enable().unwrap();
     let mut development = reader(&robot, ReportPort::Development);
-    // The thread that reports has begun, and the clock stands where a report was due.
+    // The thread that reports has started, and the clock stands at the time of a report.
     while development.next_report(GLANCE).unwrap().is_none() {
         clock.wait_s(0.01);
     }
@@ -210,7 +211,7 @@ fn reports_come_at_their_rates_and_say_what_is() {
 #[test]
 fn an_error_on_demand_stops_the_robot_and_is_reported() {
     let what = FaultKind::RobotError { code: 31 };
-    // Enabling takes six requests; a report meets the error.
+    // Enabling takes six requests. A report meets the error.
     let robot = robot(&[(what, Moment::Count(6), None)]);
     let mut client = client(&robot);
     client.enable().unwrap();
@@ -228,7 +229,7 @@ fn an_error_on_demand_stops_the_robot_and_is_reported() {
 #[test]
 fn an_emergency_stop_takes_the_motors_along() {
     let what = FaultKind::RobotError { code: 1 };
-    // Enabling takes six requests; the seventh meets the error.
+    // Enabling takes six requests. The seventh request meets the error.
     let robot = robot(&[(what, Moment::Count(6), None)]);
     let mut client = client(&robot);
     client.enable().unwrap();
@@ -352,7 +353,7 @@ fn frames_that_make_no_sense_are_refused_or_ignored() {
     let mut raw = TcpStream::connect(robot.commands()).unwrap();
     raw.set_read_timeout(Some(LATEST)).unwrap();
     use std::io::{Read, Write};
-    // A mode that does not exist, an unknown function, standard Modbus, and then a question.
+    // A mode that does not exist, an unknown function, standard Modbus, and then a query.
     for frame in [
         [0, 1, 0, 2, 0, 3, 19, 99, 0].as_slice(),
         &[0, 2, 0, 2, 0, 1, 240],
@@ -367,7 +368,7 @@ fn frames_that_make_no_sense_are_refused_or_ignored() {
     assert_eq!(answers[..8], [0, 1, 0, 2, 0, 2, 19, invalid]);
     assert_eq!(answers[8..16], [0, 2, 0, 2, 0, 2, 240, invalid]);
     assert_eq!(answers[16..], [0, 4, 0, 3, 0, 3, 13, 0x10, 4]);
-    // A size that no frame has: the stream is lost, and the connection with it.
+    // A size that no frame has: the framing of the stream is lost, and the connection ends.
     raw.write_all(&[0, 5, 0, 2, 0xff, 0xff]).unwrap();
     assert_eq!(raw.read(&mut answers).unwrap_or(0), 0);
 }

@@ -15,7 +15,7 @@ const BAROMETER: u8 = 0x6D;
 const SWITCH: u8 = 0x70;
 const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 
-/// The ball, pressed in by so much, mm.
+/// The ball, pressed in by `depth_mm`.
 fn workcell(clock: &LabClock, depth_mm: f64) -> Workcell {
     let tool = TcpPose {
         position_mm: DVec3::new(200.0, 0.0, 100.0 - depth_mm),
@@ -188,7 +188,7 @@ fn registers_are_those_of_the_family() {
     let mut bus = board(&clock, &BoardSettings::default(), &[]).bus();
     let mut byte = [0];
     bus.write(SWITCH, &[0x02]).unwrap();
-    // A trigger sets Sco, which clears itself; the sample is new until it is read.
+    // A trigger sets the bit Sco, which clears itself. The sample is new until it is read.
     bus.write(BAROMETER, &[0x30, 0x0A]).unwrap();
     bus.write_read(BAROMETER, &[0x30], &mut byte).unwrap();
     assert_eq!(byte, [0x0A]);
@@ -204,12 +204,12 @@ fn registers_are_those_of_the_family() {
     );
     bus.write_read(BAROMETER, &[0x02], &mut byte).unwrap();
     assert_eq!(byte[0] & 1, 0);
-    // Configurations can be written, one after the other.
+    // Configuration registers can be written one after the other.
     bus.write(BAROMETER, &[0xA5, 0x11, 0x2D, 0x33]).unwrap();
     let mut configurations = [0; 3];
     bus.write_read(BAROMETER, &[0xA5], &mut configurations).unwrap();
     assert_eq!(configurations, [0x11, 0x2D, 0x33]);
-    // Periodic conversions go on until they are told to stop.
+    // Periodic conversions continue until they are stopped.
     bus.write(BAROMETER, &[0x30, 0x1B]).unwrap();
     for _ in 0..3 {
         clock.wait_s(0.075);
@@ -220,7 +220,7 @@ fn registers_are_those_of_the_family() {
     clock.wait_s(0.2);
     bus.write_read(BAROMETER, &[0x02], &mut byte).unwrap();
     assert_eq!(byte[0] & 1, 0);
-    // Who burns the one-time memory has lost the part.
+    // Burning the one-time memory makes the part useless.
     bus.write(BAROMETER, &[0x30, 0x0C]).unwrap();
     assert_eq!(bus.read(BAROMETER, &mut byte), Err(NACK));
 }
@@ -324,7 +324,8 @@ fn a_stretched_clock_is_only_late() {
     let usual_s = frame_s(&mut sensor);
     clock.wait_s(0.1);
     let late_s = frame_s(&mut sensor);
-    // Opening all, triggering, and for each taxel opening, asking and reading: 26 transactions, some of which fill the wait.
+    // Open all channels, trigger, and for each taxel open, query and read: 26 transactions, some of
+    // them during the wait for the conversion.
     assert!(
         (late_s - usual_s - 26.0 * by_s).abs() < 2.0 * by_s,
         "{late_s} s, {usual_s} s"
@@ -405,7 +406,7 @@ fn a_pressure_beyond_the_range_saturates() {
     let clock = LabClock::virtual_time();
     let settings = BoardSettings {
         barometer: BarometerSettings {
-            counts_per_pa: 82.0, // to 102.3 kPa
+            counts_per_pa: 82.0, // up to 102.3 kPa
             ..BarometerSettings::default()
         },
         ..BoardSettings::default()
@@ -422,7 +423,7 @@ fn a_pressure_beyond_the_range_saturates() {
     assert!(pressures_pa[0].is_ok_and(|pa| (pa - 101_325.0).abs() < 100.0));
 }
 
-/// A transaction takes its time on the lab's clock at least, and that time passes by itself.
+/// A transaction takes at least its time on the emulator's clock, and that time passes by itself.
 #[test]
 fn real_time_is_paced() {
     let clock = LabClock::real();

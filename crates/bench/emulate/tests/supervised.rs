@@ -1,4 +1,5 @@
-//! A supervised press on the emulated robot and force sensor, in virtual time and without sockets: each fault, and what it is called.
+//! A supervised press on the emulated robot and force sensor, in virtual time and without sockets:
+//! each fault, and the cause that it gives.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -27,17 +28,17 @@ fn at(height_mm: f64) -> TcpPose {
     }
 }
 
-/// What came of a press.
+/// Result of a press.
 #[derive(Clone, Debug, PartialEq)]
 struct Outcome {
     cause: Option<Cause>,
-    /// The period in which it stopped.
+    /// The servo period in which it stopped.
     period: u64,
     most_n: f64,
     last_height_mm: f64,
 }
 
-/// The bench and what the client of it remembers.
+/// The emulated devices and the state of their client.
 struct Rig {
     clock: LabClock,
     workcell: Workcell,
@@ -181,7 +182,7 @@ impl Rig {
         }
     }
 
-    /// Presses 2 mm deep, at 5 mm/s, and then holds.
+    /// Presses 2 mm deep at 5 mm/s, and then holds.
     fn press(mut self) -> Outcome {
         let mut stopped = None;
         for period in 1..=PERIODS {
@@ -207,7 +208,7 @@ impl Rig {
     }
 }
 
-/// A press with a fault from 0.6 s on, when the goal has just got to its depth.
+/// A press with a fault from 0.6 s on, when the goal has just reached its depth.
 fn with(what: FaultKind, lasts: Option<Moment>) -> Outcome {
     let begins = Moment::TimeS(0.6);
     let press = || Rig::new(&[ScheduledFault { what, begins, lasts }], 10.0).press();

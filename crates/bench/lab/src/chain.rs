@@ -1,14 +1,14 @@
-//! The read-out chain: what becomes of the pressures at the ports before they are recorded.
+//! The read-out chain: from the pressures at the ports to recorded readings.
 
 use twintac_random::{RandomStream, normal};
 
 use crate::ReadoutReality;
 use crate::port::Port;
 
-/// The read-out of one press: its offsets walk from where the cast put them.
+/// The read-out of one press. Its offsets drift from their initial values.
 pub(crate) struct Chain<'a> {
     readout: &'a ReadoutReality,
-    /// Of each taxel.
+    /// The port of each taxel.
     ports: &'a [Port],
     resolution_kpa: f64,
     walk_kpa: Vec<f64>,
@@ -26,7 +26,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// The time stamp, s, and the readings, kPa, of the frame that is due at a time. `port_kpa` is the pressure at a taxel's port at a time.
+    /// The time stamp, s, and the readings, kPa, of the frame that is scheduled at a time.
+    /// `port_kpa` gives the pressure of the gel at a taxel's port at a time.
     pub(crate) fn read(
         &mut self,
         scheduled_s: f64,

@@ -1,9 +1,9 @@
-//! The gel's answer over time.
+//! The response of the gel over time.
 
 use twintac_depth_table::{MonotoneCubic, PressFrame};
 use twintac_simulate::{Keyframe, PressHistory};
 
-/// The gel's answer over time, between the computed moments.
+/// The response of the gel over time, interpolated between the computed moments.
 pub(crate) struct Course {
     pressure_kpa: Vec<MonotoneCubic>,
     force_n: Option<MonotoneCubic>,

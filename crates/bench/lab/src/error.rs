@@ -1,4 +1,4 @@
-//! What can go wrong on the emulated bench.
+//! Errors of the emulated bench.
 
 use twintac_simulate::SimulateError;
 
@@ -10,28 +10,28 @@ pub enum LabError {
     Simulate {
         /// The press's name.
         press: String,
-        /// Why.
+        /// The cause.
         source: SimulateError,
     },
-    /// The gel's own solver gave up before the press was over.
+    /// The solver of the gel did not converge before the end of the press.
     #[error("press `{press}`: the emulated gel did not converge {why}")]
     NotConverged {
         /// The press's name.
         press: String,
-        /// Where and why.
+        /// Where and why it did not converge.
         why: String,
     },
-    /// The gel's form is in a file, which the lab does not stretch.
+    /// The shape of the gel is given by a file, and such a shape cannot be stretched.
     #[error(
-        "sensor `{sensor}`: a gel from an STL file can't be cast {ratio} times as high; give the reality a height_ratio of 1"
+        "sensor `{sensor}`: a gel from an STL file can't be cast {ratio} times as high; set `height_ratio` to 1 in the emulator configuration"
     )]
     Height {
         /// The sensor's name.
         sensor: String,
-        /// Height over described height.
+        /// Ratio of the height to the described height.
         ratio: f64,
     },
-    /// The plan asks for an indenter that the sensor's description lacks.
+    /// The plan names an indenter that the sensor's description lacks.
     #[error("press `{press}`: there is no indenter `{indenter}` in the sensor's description")]
     NoIndenter {
         /// The press's name.

@@ -1,4 +1,4 @@
-//! The frames of a press, as they are recorded.
+//! The frames of a press as they are recorded.
 
 use twintac_recording::{Control, Press};
 use twintac_sensor::Sensor;
@@ -14,7 +14,7 @@ pub(crate) struct Moment {
     pub(crate) raw_kpa: Vec<f64>,
 }
 
-/// The frames of a press, in their order.
+/// The frames of a press, in order.
 #[derive(Default)]
 pub(crate) struct Frames(Vec<Moment>);
 
@@ -23,7 +23,8 @@ impl Frames {
         self.0.push(moment);
     }
 
-    /// Zeroes each taxel on the frames above the gel, as a recorder does before each press.
+    /// Subtracts from each taxel its mean over the frames above the gel, as a recorder does before
+    /// each press.
     pub(crate) fn into_press(self, name: &str, indenter: &str, control: Control, sensor: &Sensor) -> Press {
         let n_before = self
             .0

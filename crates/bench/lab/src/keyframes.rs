@@ -1,15 +1,17 @@
-//! The moments of a press that are computed.
+//! The computed moments of a press.
 
 use twintac_simulate::Keyframe;
 
-/// Moments computed in a hold, as fractions of it: most happens early.
+/// Moments computed in a hold, as fractions of its duration. Most of them are early, because most
+/// of the relaxation happens early.
 const HOLD_FRACTIONS: [f64; 4] = [0.05, 0.2, 0.5, 1.0];
 
-/// The first of them comes at most this long after the hold begins, s; in long holds, others three times as early come before it.
+/// The first of them comes at most this long after the start of the hold, s. In long holds further
+/// moments are added before it, each three times as early.
 const FIRST_IN_HOLD_S: f64 = 0.2;
 
-/// The moments to compute: where the depth has changed by a step, and some along a hold. All but the first gap is left out while the
-/// indenter is well above the gel.
+/// The moments to compute: whenever the depth has changed by a step, and some during a hold. While
+/// the indenter is well above the gel, only the first gap is kept.
 pub(crate) fn keyframes(schedule: &[(f64, f64)], deeper_mm: f64, step_mm: f64) -> Vec<Keyframe> {
     let mut chosen: Vec<Keyframe> = Vec::new();
     let mut at = 0;
@@ -56,7 +58,7 @@ pub(crate) fn keyframes(schedule: &[(f64, f64)], deeper_mm: f64, step_mm: f64) -
     chosen
 }
 
-/// When to compute in a hold of this length, as fractions of it.
+/// The moments to compute in a hold of this duration, as fractions of it.
 fn hold_fractions(hold_s: f64) -> Vec<f64> {
     let mut fractions = HOLD_FRACTIONS.to_vec();
     while fractions[0] * hold_s > FIRST_IN_HOLD_S {
@@ -65,7 +67,7 @@ fn hold_fractions(hold_s: f64) -> Vec<f64> {
     fractions
 }
 
-/// Whether a depth is the deepest of the schedule, where the motion turns or holds.
+/// Whether a depth is the largest of the schedule. There the motion turns or holds.
 fn is_turn(schedule: &[(f64, f64)], depth_mm: f64) -> bool {
     schedule.iter().all(|(_, other)| *other <= depth_mm + 1e-9)
 }

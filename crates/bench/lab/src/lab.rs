@@ -1,4 +1,4 @@
-//! An imperfect sensor, pressed by an imperfect robot.
+//! An imperfect sensor that an imperfect robot presses.
 
 use std::sync::Arc;
 
@@ -20,27 +20,29 @@ use crate::mounting::Mounting;
 use crate::port::{Port, bubble_kpa};
 use crate::{LabError, Reality};
 
-/// One cast of a sensor on one bench.
+/// One cast of a sensor on one emulated bench.
 pub struct Lab {
     pub(crate) drawing: Arc<Sensor>,
     gel: Gel,
     mounting: Mounting,
-    /// Of each taxel.
+    /// The port of each taxel.
     ports: Vec<Port>,
     reality: Reality,
 }
 
-/// A gel that is not higher or lower than drawn by more than this, as a part, is as drawn.
+/// Relative height difference up to which a gel counts as made to its drawing.
 const SAME_HEIGHT: f64 = 1e-12;
 
-/// How often a robot's way down is followed to where it meets the gel: each time the tilt's part of the error is left.
+/// Number of iterations that find where a tilted sensor is touched. Each one multiplies the
+/// remaining error by about the tilt.
 const FOLLOWED: usize = 4;
 
 impl Lab {
-    /// Casts a sensor: draws the gains, offsets, bubbles and places of its taxels.
+    /// Casts a sensor: draws the gains, offsets, bubbles and positions of its taxels at random.
     ///
     /// # Errors
-    /// [`LabError::Height`]: a gel from a file that is to have another height.
+    /// [`LabError::Height`]: the gel's shape comes from a file and the configuration asks for
+    /// another height.
     pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Result<Self, LabError> {
         let mut random = stream(reality.seed, "cast");
         let mut cast = (*drawing).clone();
@@ -77,7 +79,7 @@ impl Lab {
             edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
             max_nodes: usize::MAX,
-            // Reality never ends early.
+            // The emulator never gives up early.
             solver: SolverSettings {
                 tolerance: 1e-4,
                 max_iterations: 100,
@@ -99,7 +101,7 @@ impl Lab {
         })
     }
 
-    /// Performs one press and records it. The sensor is as warm as when it was switched on.
+    /// Performs one press and records it. The sensor has its temperature at power-up.
     pub fn press(&self, plan: &PressPlan) -> Result<Press, LabError> {
         let mut random = stream(self.reality.seed, &plan.name);
         let robot = &self.reality.robot;
@@ -146,7 +148,7 @@ impl Lab {
         Ok(frames.into_press(&plan.name, &plan.indenter, Control::Pose, &self.drawing))
     }
 
-    /// A recording of presses that this bench performed.
+    /// A recording of presses of this emulated bench.
     #[must_use]
     pub fn recording(&self, presses: Vec<Press>) -> Recording {
         Recording {
@@ -166,7 +168,7 @@ impl Lab {
         &self.reality
     }
 
-    /// The gel without what relaxes.
+    /// The gel without relaxation.
     pub(crate) fn instantaneous(&self) -> Gel {
         let material = Material {
             prony: Vec::new(),
@@ -180,7 +182,7 @@ impl Lab {
         &self.ports
     }
 
-    /// How much deeper than the robot believes the indenter is in a press, mm.
+    /// How much deeper the indenter is in a press than the robot assumes, mm.
     pub(crate) fn depth_offset_mm(&self, random: &mut RandomStream) -> f64 {
         let robot = &self.reality.robot;
         robot.depth_offset_mm + normal(random, robot.depth_deviation_mm)
@@ -229,7 +231,7 @@ impl Lab {
         })
     }
 
-    /// An indenter's pose in the bench's frame, from its pose in the gel's.
+    /// An indenter's pose in the bench's frame, from its pose in the gel's frame.
     pub(crate) fn on_the_bench(&self, gel_from_indenter: &Pose) -> Pose {
         Pose {
             position_mm: self.mounting.on_the_bench(gel_from_indenter.position_mm),
@@ -237,13 +239,13 @@ impl Lab {
         }
     }
 
-    /// Whether a gel comes back otherwise than it is pressed.
+    /// Whether the response of the gel differs between the way in and the way back.
     pub(crate) fn has_friction(&self, indenter: &str) -> bool {
         let described = self.drawing.indenter(indenter).and_then(|known| known.friction);
         described.unwrap_or(self.reality.gel.friction) > 0.0
     }
 
-    /// The read-out of a press that begins.
+    /// The read-out at the start of a press.
     pub(crate) fn chain(&self) -> Chain<'_> {
         Chain::new(
             &self.reality.readout,
@@ -253,7 +255,7 @@ impl Lab {
     }
 }
 
-/// A gel with its heights in a ratio; `None` of one that a file has the form of.
+/// A gel with its heights scaled by a ratio. `None` if its shape comes from a file.
 fn heightened(solid: &Solid, ratio: f64) -> Option<Solid> {
     let mut solid = solid.clone();
     match &mut solid {

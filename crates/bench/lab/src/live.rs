@@ -1,9 +1,11 @@
-//! The emulated gel as the bench's devices feel it while a robot moves.
+//! The emulated gel as the emulated devices feel it while a robot moves.
 //!
-//! Each place of a plan is computed before the robot moves, as a table over depth of the gel's instantaneous answer; with friction one inwards and
-//! one back. What relaxes comes on top as
-//! a fading memory of what the table said, `σ(t) = (1 - Σ wᵢ) σₑ(t) + Σ wᵢ ∫ exp(-(t - s)/τᵢ) dσₑ(s)`: quasi-linear viscoelasticity (Fung,
-//! Biomechanics, 1981, section 7.6), which a robot may drive in whatever way it comes to, for as long as the indenter pushes.
+//! Each location of a plan is computed before the robot moves, as a table over depth of the gel's
+//! instantaneous response; with friction there is one table for the way in and one for the way
+//! back. Relaxation is added as a fading memory of the table's values,
+//! `σ(t) = (1 - Σ wᵢ) σₑ(t) + Σ wᵢ ∫ exp(-(t - s)/τᵢ) dσₑ(s)`: quasi-linear viscoelasticity (Fung,
+//! Biomechanics, 1981, section 7.6). It holds for any motion of the robot, as long as the indenter
+//! pushes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,13 +23,13 @@ use crate::port::Port;
 use crate::ways::{Ways, way_back};
 use crate::{ClimateReality, Lab, LabError, Relaxation};
 
-/// How much deeper than planned the tables go, mm.
+/// Depth of the tables beyond the planned depth, mm.
 const SPARE_MM: f64 = 0.5;
 
-/// Values that a table gives: the force, and the pressures at all taxels that there can be.
+/// Values of a table: the force, and the pressures at the largest number of taxels.
 const VALUES: usize = 1 + MOST_TAXELS;
 
-/// What the devices feel of one cast of a sensor, pressed at the places of a plan.
+/// One cast of a sensor, pressed at the locations of a plan, as the devices feel it.
 pub struct LiveGel {
     base_from_gel: Pose,
     tool_from_indenter: Pose,
@@ -35,63 +37,63 @@ pub struct LiveGel {
     selected: Arc<AtomicUsize>,
     relaxation: Vec<Relaxation>,
     climate: ClimateReality,
-    /// Of each taxel.
+    /// The port of each taxel.
     ports: Vec<Port>,
     drift_kpa_per_sqrt_s: f64,
     random: RandomStream,
     memory: Memory,
 }
 
-/// Tells the gel which press of its plan comes next: with which indenter, at which place.
+/// Tells the gel which press of its plan comes next, and so its indenter and its location.
 #[derive(Clone)]
 pub struct Selector {
     names: Arc<Vec<String>>,
     selected: Arc<AtomicUsize>,
 }
 
-/// The gel's instantaneous answer at the place of one press: a table over depth.
+/// The gel's instantaneous response at the location of one press: a table over depth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LiveTable {
     name: String,
     /// Height of the indenter's origin at first touch, mm, in the gel's frame.
     touch_mm: f64,
-    /// How much deeper than the robot believes the indenter is, mm.
+    /// How much deeper the indenter is than the robot assumes, mm.
     deeper_mm: f64,
     /// Depths, mm.
     depths_mm: Vec<f64>,
-    /// Force, N, at each.
+    /// Force at each depth, N.
     force_n: Vec<f64>,
-    /// Pressure, kPa, at each, of every taxel.
+    /// Pressure of every taxel at each depth, kPa.
     pressures_kpa: Vec<Vec<f64>>,
-    /// The same on the way back, from the deepest on; empty without friction.
+    /// The same for the way back, from the largest depth on. Empty without friction.
     depths_back_mm: Vec<f64>,
     force_back_n: Vec<f64>,
     pressures_back_kpa: Vec<Vec<f64>>,
 }
 
-/// A table to be asked.
+/// A table that can be evaluated at any depth.
 struct Curves {
     touch_mm: f64,
     deeper_mm: f64,
     of: [Option<Ways>; VALUES],
 }
 
-/// What has been felt so far.
+/// The history of the press.
 struct Memory {
     time_s: f64,
     elastic: [f64; VALUES],
-    /// The deepest of this touch, mm: the way back begins there.
+    /// Largest depth of this touch, mm. The way back begins there.
     turn_mm: f64,
-    /// Of each term of the relaxation.
+    /// State of each relaxation term.
     fading: Vec<[f64; VALUES]>,
     walk_kpa: [f64; MOST_TAXELS],
 }
 
 impl Lab {
-    /// Computes the gel's answer at the place of a press.
+    /// Computes the gel's response at the location of a press.
     ///
     /// # Errors
-    /// A place that can't be pressed, or not as deep as planned.
+    /// A location that cannot be pressed, or not to the planned depth.
     pub fn live_table(&self, plan: &PressPlan) -> Result<LiveTable, LabError> {
         let mut random = stream(self.reality().seed, &plan.name);
         let place = self.true_place(plan, &mut random)?;
@@ -107,7 +109,7 @@ impl Lab {
                 press: plan.name.clone(),
                 source,
             })?;
-        // What is spare may be blocked by the shell.
+        // The additional depth may be blocked by the shell.
         let deepest_mm = table.frames.last().map_or(0.0, |frame| frame.depth_mm);
         if let Some(why) = &table.failure
             && deepest_mm < plan.depth_mm + deeper_mm.max(0.0)
@@ -141,7 +143,8 @@ impl Lab {
         (0..self.ports().len()).map(of).collect()
     }
 
-    /// The gel, as it stands in the robot's base frame, under an indenter that sits in the tool's frame.
+    /// The gel at a pose in the robot's base frame, under an indenter at a pose in the tool's
+    /// frame.
     #[must_use]
     pub fn live(
         &self,
@@ -209,7 +212,8 @@ fn points(depths_mm: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
 }
 
 impl Selector {
-    /// Puts the indenter of a press on, by the press's name. False if the plan has no such press.
+    /// Selects a press by its name, and with it its indenter. Returns false if the plan has no such
+    /// press.
     #[must_use]
     pub fn select(&self, press: &str) -> bool {
         let found = self.names.iter().position(|name| name == press);
@@ -252,7 +256,8 @@ impl Physics for LiveGel {
 }
 
 impl Curves {
-    /// The values with the indenter's origin at a height, mm, in the bench's frame. `turn_mm` is the deepest of this touch so far, mm.
+    /// The values with the indenter's origin at a height, mm, in the bench's frame. `turn_mm` is
+    /// the largest depth of this touch so far, mm.
     fn at(&self, height_mm: f64, turn_mm: &mut f64) -> [f64; VALUES] {
         let depth_mm = self.touch_mm - height_mm + self.deeper_mm;
         if depth_mm <= 0.0 {
@@ -271,7 +276,8 @@ impl Curves {
 }
 
 impl Memory {
-    /// Lives through a step in which the elastic values change evenly; returns what is felt at its end.
+    /// Advances by a step in which the elastic values change linearly. Returns the values at its
+    /// end.
     fn advance(&mut self, elastic: [f64; VALUES], time_s: f64, terms: &[Relaxation]) -> [f64; VALUES] {
         let step_s = time_s - self.time_s;
         let weights: f64 = terms.iter().map(|term| term.weight).sum();
@@ -287,7 +293,8 @@ impl Memory {
             }
         }
         (self.time_s, self.elastic) = (time_s, elastic);
-        // The indenter pushes and never pulls: a gel that is slower than it has let go, and nothing is left on its surface that would strain it.
+        // The indenter pushes and never pulls. A gel that returns more slowly than the indenter has
+        // lost contact, and has no load on its surface.
         if felt[0] > 0.0 { felt } else { [0.0; VALUES] }
     }
 }

@@ -1,4 +1,4 @@
-//! A weight put on the imperfect sensor.
+//! A weight on the imperfect sensor.
 
 use glam::DQuat;
 use twintac_depth_table::{DepthTable, MonotoneCubic, PressFrame};
@@ -11,20 +11,22 @@ use crate::frames::{Frames, Moment};
 use crate::ways::{Ways, way_back};
 use crate::{Lab, LabError};
 
-/// The depth that is tried first for a weight, mm.
+/// Depth of the first trial for a weight, mm.
 const FIRST_DEPTH_MM: f64 = 0.1;
 
-/// A table goes this much beyond the weight.
+/// A table reaches this factor beyond the weight.
 const MARGIN: f64 = 1.05;
 
 impl Lab {
-    /// Puts a weight on the gel, takes it off again, and records it. The recorded force is the weight.
+    /// Puts a weight on the gel, takes it off again, and records it. The recorded force is the
+    /// weight.
     ///
-    /// The pressure under a constant force is read off the table of the gel's instantaneous answer: what relaxes changes how deep a weight
-    /// sinks, but in a nearly incompressible gel hardly the pressures that carry it. So loads show no creep.
+    /// The pressure under a constant force is read from the table of the gel's instantaneous
+    /// response. Relaxation changes how deep a weight sinks. In a nearly incompressible gel it
+    /// hardly changes the pressures that carry the weight. Therefore loads show no creep.
     ///
     /// # Errors
-    /// A place that can't be pressed, or a weight that the gel does not carry.
+    /// A location that cannot be pressed, or a weight that the gel does not carry.
     pub fn load(&self, plan: &LoadPlan) -> Result<Press, LabError> {
         let mut random = stream(self.reality().seed, &plan.name);
         let as_press = PressPlan {
@@ -59,7 +61,7 @@ impl Lab {
         );
         let force_n = |time_s: f64| force.as_ref().map_or(0.0, |force| force.at(time_s));
 
-        // From here on the weight is on the gel, or comes off.
+        // From here on the weight is on the gel, or is being taken off.
         let heaviest_s = course
             .iter()
             .find(|(_, weight_n)| *weight_n >= plan.force_n)
@@ -89,7 +91,8 @@ impl Lab {
         Ok(frames.into_press(&plan.name, &plan.indenter, Control::Force, &self.drawing))
     }
 
-    /// A table that goes as deep as the weight needs, and not much deeper: its mesh is as fine as the contact is small.
+    /// A table that reaches the depth that the weight needs, and little more, because the mesh is
+    /// finer for a smaller contact.
     fn depth_table_to(
         &self,
         plan: &LoadPlan,
@@ -116,7 +119,7 @@ impl Lab {
             }
             place.depth_mm *= 2.0;
             if place.depth_mm > gel.height_mm() {
-                let why = format!("under {} N, which it does not carry", plan.force_n);
+                let why = format!("under {} N: it cannot carry this force", plan.force_n);
                 return Err(LabError::NotConverged { press, why });
             }
         }

@@ -1,20 +1,23 @@
-//! How the sensor lies under the robot.
+//! The installation of the sensor under the robot.
 //!
-//! A bench is set up by touching the top of the gel's middle: there, the robot knows where the gel is. It takes the rest from the drawing: that the
-//! sensor lies level, and how far below the top the board is. The *bench's frame* is the gel's frame as it would then be; poses are planned and
-//! recorded in it. A sensor that is tilted, or whose gel is thicker than drawn, has its own frame elsewhere.
+//! A setup is calibrated by touching the top of the gel's middle: there the robot knows the
+//! position of the gel. It takes the rest from the drawing: that the sensor is level, and how far
+//! below the top the board is. The *bench's frame* is the gel's frame under these assumptions;
+//! poses are planned and recorded in it. The frame of a sensor that is tilted, or whose gel is
+//! thicker than drawn, differs from it.
 
 use glam::{DQuat, DVec2, DVec3};
 use twintac_shape::Pose;
 
-/// Where the gel is in the bench's frame.
+/// The pose of the gel in the bench's frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mounting {
     bench_from_gel: Pose,
 }
 
 impl Mounting {
-    /// A gel of a height, described with another one, whose sensor is turned about the bench's x and y axes about the touched point.
+    /// A gel of a height that differs from its described height, on a sensor that is rotated about
+    /// the bench's x and y axes about the touched point.
     pub(crate) fn new(described_height_mm: f64, height_mm: f64, [x_rad, y_rad]: [f64; 2]) -> Self {
         let rotation = DQuat::from_scaled_axis(DVec3::new(x_rad, y_rad, 0.0));
         let top_mm = |height_mm: f64| DVec3::Z * height_mm;
@@ -26,22 +29,23 @@ impl Mounting {
         }
     }
 
-    /// The robot's way up in the gel's frame, a unit vector.
+    /// The upward direction of the robot in the gel's frame, a unit vector.
     pub(crate) fn upwards(&self) -> DVec3 {
         self.bench_from_gel.rotation.inverse() * DVec3::Z
     }
 
-    /// A rotation of an indenter, from the bench's frame to the gel's.
+    /// A rotation of an indenter, converted from the bench's frame to the gel's frame.
     pub(crate) fn turned(&self, bench_from_indenter: DQuat) -> DQuat {
         self.bench_from_gel.rotation.inverse() * bench_from_indenter
     }
 
-    /// That rotation back, from the gel's frame to the bench's.
+    /// The inverse: from the gel's frame to the bench's frame.
     pub(crate) fn as_recorded(&self, gel_from_indenter: DQuat) -> DQuat {
         self.bench_from_gel.rotation * gel_from_indenter
     }
 
-    /// The point of the gel's frame that is on the robot's way down at a place of the bench, mm, and has a height in the gel's frame, mm.
+    /// The point on the robot's way down at a location of the bench, mm, that has a given height in
+    /// the gel's frame, mm; in the gel's frame.
     pub(crate) fn on_the_way(&self, place_mm: DVec2, height_mm: f64) -> DVec3 {
         let start_mm = self
             .bench_from_gel
@@ -50,7 +54,7 @@ impl Mounting {
         start_mm + upwards * ((height_mm - start_mm.z) / upwards.z)
     }
 
-    /// A point of the gel's frame in the bench's, mm.
+    /// A point of the gel's frame, converted to the bench's frame, mm.
     pub(crate) fn on_the_bench(&self, point_mm: DVec3) -> DVec3 {
         self.bench_from_gel.transform_point(point_mm)
     }

@@ -1,31 +1,38 @@
-//! A barometer's port, and the air that is trapped in it.
+//! A barometer's port and the air that is trapped in it.
 //!
-//! Gel that is cast over a barometer keeps a bubble of air in the port. The barometer reads the air's pressure. Two laws tell it from the gel's, with
-//! `e` for what the air has above the `p₀` at which it was trapped, and `P` for the gel's pressure before the port:
+//! Gel that is cast over a barometer keeps a bubble of air in the port. The barometer reads the
+//! pressure of this air. Two laws relate it to the pressure of the gel. `e` is the pressure of the
+//! air above `p₀`, the pressure at which it was trapped, and `P` is the pressure of the gel in
+//! front of the port:
 //!
-//! - The air keeps `p V` (Boyle's law: a bubble this small is always as warm as its walls). So the gel that bulges into it takes `ΔV = V₀ e / (p₀ + e)`.
-//! - The gel resists the bulge. Beside the port it holds on to the board; by symmetry it is then half of a body with a circular crack that a
-//!   pressure `P - e` opens, whose volume is known (Sneddon, Proc. R. Soc. A 187, 1946, p. 229): the half of it is
-//!   `ΔV = 8 (1 - ν²) a³ (P - e) / (3 E)`, which is `2 a³ (P - e) / (3 G)` for an incompressible gel. Port radius `a`, shear modulus `G`.
+//! - The air keeps `p V` constant (Boyle's law: a bubble this small always has the temperature of
+//!   its walls). So the volume of the gel that bulges into it is `ΔV = V₀ e / (p₀ + e)`.
+//! - The gel resists the bulge. Beside the port it is bonded to the board. By symmetry it is then
+//!   half of a body with a circular crack that a pressure `P - e` opens. The volume of such a crack
+//!   is known (Sneddon, Proc. R. Soc. A 187, 1946, p. 229). Half of it is
+//!   `ΔV = 8 (1 - ν²) a³ (P - e) / (3 E)`, which is `2 a³ (P - e) / (3 G)` for an incompressible
+//!   gel, with the port radius `a` and the shear modulus `G`.
 //!
-//! Together `P = e + B e / (p₀ + e)` with `B = 3 G V₀ / (2 a³)`, a quadratic equation for `e`. A port reads `p₀ / (p₀ + B)` of a small pressure, and
-//! ever more of a large one, when its bubble is small. That the bulge is small beside the port is assumed, and that it does not relax.
+//! Together they give `P = e + B e / (p₀ + e)` with `B = 3 G V₀ / (2 a³)`, a quadratic equation for
+//! `e`. A port reads the fraction `p₀ / (p₀ + B)` of a small pressure, and a larger fraction of a
+//! large pressure, which makes its bubble small. Assumptions: the bulge is small beside the port,
+//! and does not relax.
 
 /// Pressure of the air, kPa.
 pub(crate) const ATMOSPHERE_KPA: f64 = 101.325;
 
-/// What becomes of the gel's pressure at a barometer's port.
+/// How a barometer's port changes the pressure of the gel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Port {
     pub(crate) gain: f64,
     pub(crate) offset_kpa: f64,
     pub(crate) offset_kpa_per_k: f64,
-    /// How much the gel resists the emptying of the bubble, `B` above, kPa; 0 without a bubble.
+    /// Resistance of the gel to the compression of the bubble, `B` above, kPa. 0 without a bubble.
     pub(crate) bubble_kpa: f64,
 }
 
 impl Port {
-    /// A perfect one.
+    /// A port without imperfections.
     pub(crate) const PERFECT: Self = Self {
         gain: 1.0,
         offset_kpa: 0.0,
@@ -33,7 +40,8 @@ impl Port {
         bubble_kpa: 0.0,
     };
 
-    /// Absolute pressure in it, kPa, under a pressure of the gel, kPa, so much warmer than when it was cast, K.
+    /// Absolute pressure in the port, kPa, for a pressure of the gel, kPa, and a temperature rise
+    /// since casting, K.
     pub(crate) fn absolute_kpa(&self, gel_kpa: f64, warmed_k: f64) -> f64 {
         ATMOSPHERE_KPA
             + self.offset_kpa
@@ -42,7 +50,8 @@ impl Port {
     }
 }
 
-/// `B` of a bubble of a volume, mm³, in a port of a radius, mm, under a gel of a shear modulus, kPa.
+/// The constant `B`, kPa, of a bubble with a volume, mm³, in a port with a radius, mm, under a gel
+/// with a shear modulus, kPa.
 pub(crate) fn bubble_kpa(volume_mm3: f64, radius_mm: f64, shear_modulus_kpa: f64) -> f64 {
     1.5 * shear_modulus_kpa * volume_mm3 / radius_mm.powi(3)
 }
@@ -69,7 +78,8 @@ mod tests {
         for gel_kpa in [-40.0, -1.0, 0.0, 0.3, 20.0, 150.0, 900.0] {
             let air = air_kpa(bubble, gel_kpa);
             let by_boyle = volume_mm3 * (1.0 - ATMOSPHERE_KPA / (ATMOSPHERE_KPA + air));
-            // A crack's volume is 16 (1 - ν²) a³ p / (3 E); half of it, ν = 1/2 and E = 3 G.
+            // The volume of a crack is 16 (1 - ν²) a³ p / (3 E). The bulge is half of it, with ν =
+            // 1/2 and E = 3 G.
             let crack = 16.0 * 0.75 * radius_mm.powi(3) * (gel_kpa - air) / (9.0 * shear_modulus_kpa);
             assert!((by_boyle - 0.5 * crack).abs() < 1e-9, "{gel_kpa} {air}");
         }

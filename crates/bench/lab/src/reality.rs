@@ -1,13 +1,14 @@
-//! How the emulated bench differs from its drawings.
+//! Emulator configurations: how the emulated bench differs from its drawings.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, ConfigError, Ranges};
 
-/// The imperfections of one emulated bench. Everything that is drawn at random comes from `seed`, by name, once per bench or press.
+/// The imperfections of one emulated bench. All random values come from `seed` and a name, and are
+/// drawn once per bench or per press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reality {
-    /// What this reality is meant to be like.
+    /// Description of this configuration for people.
     pub summary: String,
     /// Seed of the cast and of every press.
     pub seed: u64,
@@ -17,32 +18,35 @@ pub struct Reality {
     pub readout: ReadoutReality,
     /// The robot and the force sensor.
     pub robot: RobotReality,
-    /// How the sensor lies under the robot. Default: level.
+    /// The installation of the sensor under the robot. Default: level.
     #[serde(default)]
     pub mounting: MountingReality,
-    /// How warm the sensor is. Default: always 25 °C.
+    /// The temperature of the sensor. Default: always 25 °C.
     #[serde(default)]
     pub climate: ClimateReality,
 }
 
-/// The gel as it was cast, and how finely it is computed.
+/// The gel as it was cast, and the resolution of its computation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GelReality {
-    /// Edges of the lab's own mesh over the gel's height.
+    /// Element edges of the emulator's own mesh over the gel's height.
     pub edges_per_height: f64,
-    /// Edges across the contact's radius.
+    /// Element edges over the radius of the contact.
     pub edges_per_contact_radius: f64,
     /// Yeoh constants C10, C20, C30 of the instantaneous response, kPa.
     pub yeoh_kpa: [f64; 3],
     /// Bulk modulus, kPa.
     pub bulk_modulus_kpa: f64,
-    /// Relaxation: share of the instantaneous stiffness and time constant of each term.
+    /// Viscoelastic relaxation: fraction of the instantaneous stiffness and time constant of each
+    /// term.
     pub relaxation: Vec<Relaxation>,
-    /// Height over the described height. Default 1. A robot that is set up by touching the gel does not notice.
+    /// Ratio of the height to the described height. Default 1. A robot that is set up by touching
+    /// the gel does not notice this difference.
     #[serde(default = "one")]
     pub height_ratio: f64,
-    /// Coulomb's coefficient of friction between indenters and gel. Default 0. An indenter whose description states one keeps it.
+    /// Coulomb's coefficient of friction between indenters and gel. Default 0. An indenter whose
+    /// description has a coefficient keeps it.
     #[serde(default)]
     pub friction: f64,
     /// Largest change of depth between two computed moments, mm.
@@ -53,7 +57,7 @@ pub struct GelReality {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Relaxation {
-    /// Share of the instantaneous isochoric stiffness that relaxes, 0 to 1.
+    /// Fraction of the instantaneous isochoric stiffness that relaxes, 0 to 1.
     pub weight: f64,
     /// Time constant, s.
     pub time_s: f64,
@@ -63,35 +67,36 @@ pub struct Relaxation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReadoutReality {
-    /// Mean gain of the taxels: what one reads over the pressure that the gel has at its port. A cast that bonds badly or keeps bubbles has less,
-    /// a cavity that gathers pressure more. Default 1.
+    /// Mean gain of the taxels: the ratio of the reading to the pressure of the gel at the port. A
+    /// cast that is badly bonded or has bubbles has a lower gain, a cavity that concentrates
+    /// pressure has a higher one. Default 1.
     #[serde(default = "one")]
     pub gain_mean: f64,
-    /// Standard deviation of a taxel's gain, as a part of the mean.
+    /// Standard deviation of a taxel's gain, as a fraction of the mean.
     pub gain_deviation: f64,
     /// Mean volume of the air that is trapped in a port, mm³. Default 0.
     #[serde(default)]
     pub bubble_mm3: f64,
-    /// Standard deviation of that between taxels, mm³; no bubble is smaller than none. Default 0.
+    /// Standard deviation of this volume between taxels, mm³. Negative volumes become 0. Default 0.
     #[serde(default)]
     pub bubble_deviation_mm3: f64,
     /// Standard deviation of a taxel's offset, kPa.
     pub offset_deviation_kpa: f64,
-    /// Standard deviation of a taxel's place along x and y, mm.
+    /// Standard deviation of a taxel's position along x and y, mm.
     pub position_deviation_mm: f64,
     /// Standard deviation of the noise of one reading, kPa.
     pub noise_kpa: f64,
-    /// Standard deviation of a random walk of each offset over one second, kPa.
+    /// Standard deviation of the random walk of each offset over one second, kPa.
     pub drift_kpa_per_sqrt_s: f64,
-    /// By how much an offset moves with temperature, mean of the taxels, kPa/K. Default 0.
+    /// Change of an offset with temperature, mean of the taxels, kPa/K. Default 0.
     #[serde(default)]
     pub offset_kpa_per_k: f64,
-    /// Standard deviation of that between taxels, kPa/K. Default 0.
+    /// Standard deviation of this change between taxels, kPa/K. Default 0.
     #[serde(default)]
     pub offset_deviation_kpa_per_k: f64,
-    /// How long after the time stamp the first taxel is read, s.
+    /// Time from the time stamp to the reading of the first taxel, s.
     pub lag_s: f64,
-    /// How much later each next taxel is read, s.
+    /// Additional time for each next taxel, s.
     pub lag_per_taxel_s: f64,
     /// Standard deviation of a frame's time stamp about its schedule, s.
     pub jitter_s: f64,
@@ -101,35 +106,38 @@ pub struct ReadoutReality {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotReality {
-    /// Standard deviation of a press's place along x and y, mm.
+    /// Standard deviation of a press's location along x and y, mm.
     pub place_deviation_mm: f64,
-    /// Depth by which every press goes deeper than commanded (the surface is not where it was taught), mm.
+    /// Depth by which every press is deeper than commanded, because the surface is not where it was
+    /// taught, mm.
     pub depth_offset_mm: f64,
-    /// Standard deviation of a press's depth about that, mm.
+    /// Standard deviation of a press's depth about this value, mm.
     pub depth_deviation_mm: f64,
     /// Standard deviation of the noise of one force sample, N.
     pub force_noise_n: f64,
-    /// How late the force sensor's samples are, s.
+    /// Delay of the force sensor's samples, s.
     pub force_lag_s: f64,
 }
 
-/// How the sensor lies under the robot, which takes it to lie level. It is turned about the middle of its top, where the robot was set up.
+/// The installation of the sensor under the robot. The robot assumes that the sensor is level. The
+/// sensor is rotated about the middle of its top, where the robot was set up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MountingReality {
-    /// How far it is turned about the bench's x and y axes, rad.
+    /// Rotation about the bench's x and y axes, rad.
     pub tilt_rad: [f64; 2],
 }
 
-/// How warm the sensor is: from when it is switched on it warms up, by what its own chips and a robot above it give off.
+/// The temperature of the sensor. After power-up it rises, because of the heat of its own chips and
+/// of a robot above it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClimateReality {
-    /// Temperature when the bench is switched on, °C.
+    /// Temperature at power-up, °C.
     pub start_c: f64,
-    /// By how much it rises in the end, K.
+    /// Final temperature rise, K.
     pub warming_k: f64,
-    /// Time constant of that, s.
+    /// Time constant of the rise, s.
     pub warming_time_s: f64,
 }
 
@@ -145,13 +153,13 @@ impl Default for ClimateReality {
 }
 
 impl ClimateReality {
-    /// How much warmer than at its start the sensor is, K, so long after the bench was switched on, s.
+    /// Temperature rise since power-up, K, at a time since power-up, s.
     pub(crate) fn warmed_k(&self, time_s: f64) -> f64 {
         -self.warming_k * (-time_s / self.warming_time_s).exp_m1()
     }
 }
 
-/// The largest tilt about an axis, rad: farther, nobody believes a sensor to lie level.
+/// Largest tilt about an axis, rad. Nobody would take a sensor with a larger tilt for level.
 const LARGEST_TILT_RAD: f64 = 0.2;
 
 fn one() -> f64 {
@@ -159,7 +167,8 @@ fn one() -> f64 {
 }
 
 impl Reality {
-    /// Reads a reality from the text of a TOML file; errors name file, line and field.
+    /// Reads an emulator configuration from the text of a TOML file. Errors name file, line and
+    /// field.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         twintac_config::parse::<Self>(file, text)?.checked()
     }
@@ -285,7 +294,7 @@ impl Checked for ClimateReality {
             warming_time_s,
         } = *self;
         ranges.number("warming_time_s", warming_time_s, 1e-3..=1e6);
-        // What the barometers' registers can say.
+        // The range that the barometers' registers can represent.
         for (field, temperature_c) in [("start_c", start_c), ("warming_k", start_c + warming_k)] {
             let problem = || format!("makes the sensor {temperature_c:?} °C");
             let hint = || "keep it between -128 and 128 °C";
@@ -404,7 +413,7 @@ mod tests {
 
     #[test]
     fn every_number_has_a_range() {
-        // Zero switches the others off.
+        // Zero switches these imperfections off.
         let signed = [
             "gel.yeoh_kpa[1]",
             "gel.yeoh_kpa[2]",

@@ -1,27 +1,30 @@
-//! What the gel answers on the way in and on the way back.
+//! The response of the gel while a press goes in and while it goes back.
 //!
-//! Without friction they are the same. With friction the gel is dragged along by the indenter, inwards and then outwards: on the way back it answers
-//! less at the same depth, and the loop between both is the work that friction takes. A place is computed once in and back from one turning
-//! point. A press that turns elsewhere comes back on the same loop, scaled to where it turned. That is exact where a contact grows similar to
-//! itself, as a ball's or a cone's on a deep gel (Spence, J. Elasticity 5, 1975, p. 297), and close where it turns close to the computed point. A press
-//! that turns inwards again goes back along the same way.
+//! Without friction both are the same. With friction the indenter drags the gel along, first
+//! inwards and then outwards. On the way back the response at the same depth is smaller, and the
+//! loop between both is the work that friction takes. A location is computed once, in and back from
+//! one turning point. A press that turns at another depth comes back on the same loop, scaled to
+//! its turning point. This is exact if the contact grows in a self-similar way, as that of a ball
+//! or a cone on a deep gel (Spence, J. Elasticity 5, 1975, p. 297), and accurate if the press turns
+//! close to the computed point. A press that turns inwards again goes back along the same curve.
 
 use twintac_depth_table::{MonotoneCubic, PressFrame};
 use twintac_simulate::{Gel, Keyframe, PressPlace};
 
 use crate::LabError;
 
-/// A value over how far a press is: its depth, or its force.
+/// A value as a function of the progress of a press: its depth, or its force.
 pub(crate) struct Ways {
     inwards: MonotoneCubic,
-    /// By how much the way back differs; `None` without friction.
+    /// Difference of the way back to the way in. `None` without friction.
     backwards: Option<MonotoneCubic>,
     turn: f64,
 }
 
 impl Ways {
-    /// Of values at increasing distances; the way back begins where it turns, with the last of the way in. Points of the way back that are not
-    /// before the last are left out. `None` if the way in is none.
+    /// `inwards` are values at increasing progress. `back` begins at the turning point, with the
+    /// last value of `inwards`. Points of `back` that do not lie before the last kept one are left
+    /// out. `None` if `inwards` gives no curve.
     pub(crate) fn new(inwards: Vec<[f64; 2]>, back: &[[f64; 2]]) -> Option<Self> {
         let turn = inwards.last()?[0];
         let [far, values] = columns(inwards);
@@ -41,18 +44,19 @@ impl Ways {
         })
     }
 
-    /// The value at a distance on the way in.
+    /// The value at a progress on the way in.
     pub(crate) fn inwards(&self, far: f64) -> f64 {
         self.inwards.at(far)
     }
 
-    /// The value at a distance, after the press turned at another; `share` is the force at which it turned over that of the computed turn.
+    /// The value at a progress `far`, after the press turned at `turn`. `share` is the ratio of the
+    /// force at this turn to the force at the computed turn.
     pub(crate) fn back(&self, far: f64, turn: f64, share: f64) -> f64 {
         let differs = self.backwards.as_ref().filter(|_| far < turn);
         self.inwards.at(far) + differs.map_or(0.0, |backwards| share * backwards.at(far / turn * self.turn))
     }
 
-    /// Where the computed press turned.
+    /// The progress at which the computed press turned.
     pub(crate) fn turn(&self) -> f64 {
         self.turn
     }
@@ -63,7 +67,8 @@ fn columns(points: Vec<[f64; 2]>) -> [Vec<f64>; 2] {
     [far, values]
 }
 
-/// Presses to the depths of frames once more and comes back: the frames of the way back, from its turn on.
+/// Presses to the depths of the frames again and comes back. Returns the frames of the way back,
+/// from its turning point on.
 pub(crate) fn way_back(
     gel: &Gel,
     place: &PressPlace,
@@ -92,7 +97,7 @@ pub(crate) fn way_back(
     match history.failure {
         Some(why) => Err(LabError::NotConverged {
             press: press.to_owned(),
-            why: format!("on its way back {why}"),
+            why: format!("during unloading {why}"),
         }),
         None => Ok(history.frames[turn..].to_vec()),
     }
@@ -102,7 +107,8 @@ pub(crate) fn way_back(
 mod tests {
     use super::*;
 
-    /// A loop that grows similar to itself: `x^1.5` inwards, less on the way back by a share that depends on how far back it is.
+    /// A self-similar loop: `x^1.5` inwards, and a smaller value on the way back. The fraction
+    /// depends on how far the press has gone back.
     fn ways(turn: f64) -> Ways {
         let far = |i: i32| turn * f64::from(i) / 40.0;
         let inwards = (0..=40).map(|i| [far(i), far(i).powf(1.5)]).collect();

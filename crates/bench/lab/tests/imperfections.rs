@@ -1,4 +1,5 @@
-//! Each imperfection of a reality, on a small gel: what it changes, and what a robot would record of it.
+//! Each imperfection of an emulator configuration on a small gel: its effect, and what a robot
+//! would record of it.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -17,7 +18,7 @@ const HEIGHT_MM: f64 = 6.0;
 const RADIUS_MM: f64 = 8.0;
 const SMOOTHNESS_MM: f64 = 1e-9;
 
-/// A block with a taxel in its middle and one beside it, and a ball.
+/// A block with a taxel in its middle and another one beside it, and a ball.
 fn sensor() -> Arc<Sensor> {
     let text = format!(
         r#"
@@ -55,7 +56,7 @@ shape = {{ kind = "sphere", radius_mm = {RADIUS_MM:?} }}
     Arc::new(Sensor::parse("block", &text, &|_| Err(std::io::Error::other("no files"))).unwrap())
 }
 
-/// A perfect bench with an elastic gel.
+/// A bench without imperfections, with an elastic gel.
 fn perfect() -> Reality {
     let text = "
 summary = 'perfect, elastic'
@@ -110,7 +111,7 @@ fn press(change: impl Fn(&mut Reality), x_mm: f64, y_mm: f64) -> Press {
     lab(change).press(&plan(x_mm, y_mm)).unwrap()
 }
 
-/// The recorded height at which the plan has no depth, mm.
+/// The recorded height at which the plan has zero depth, mm.
 fn touch_mm(press: &Press) -> f64 {
     press.gel_from_indenter[0].position_mm.z - 0.3
 }
@@ -123,7 +124,8 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, f64::max)
 }
 
-/// What a value encloses over depth: of a force in a whole press, the work that it took.
+/// The area that a value encloses over depth. For the force over a whole press this is the work
+/// that was lost.
 fn enclosed(press: &Press, values: &[f64]) -> f64 {
     let height_mm = |i: usize| press.gel_from_indenter[i].position_mm.z;
     (1..values.len())
@@ -144,7 +146,7 @@ fn a_higher_gel_is_softer_and_is_touched_where_the_robot_was_set_up() {
     let [stiff_n, soft_n] = [&described, &higher].map(|press| largest(force_n(press).iter().copied()));
     assert!(soft_n < 0.95 * stiff_n, "{soft_n} {stiff_n}");
 
-    // As soft as a gel that is described so.
+    // It is as soft as a gel that is described with this height.
     let mut tall = (*sensor()).clone();
     tall.gel.solid = Solid::Block {
         size_mm: [20.0, 20.0, 1.2 * HEIGHT_MM],
@@ -166,7 +168,8 @@ fn a_ball_touches_a_tilted_sensor_where_its_plane_is() {
     let level = press(|_| (), 0.0, 0.0);
     for x_mm in [-4.0, 0.0, 4.0] {
         let found_mm = touch_mm(&press(tilted, x_mm, 0.0));
-        // The ball's centre is a radius away from a plane through (0, 0, height) that falls along x.
+        // The centre of the ball is one radius away from a plane through (0, 0, height) that
+        // descends along x.
         let center_mm = (RADIUS_MM - x_mm * tilt_rad.sin()) / tilt_rad.cos();
         let expected_mm = HEIGHT_MM + center_mm - RADIUS_MM;
         assert!(
@@ -179,7 +182,8 @@ fn a_ball_touches_a_tilted_sensor_where_its_plane_is() {
         assert_eq!(recorded.rotation, planned.rotation, "the recording does not know");
         assert_eq!(recorded.position_mm.truncate(), planned.position_mm.truncate());
     }
-    // A ball above the middle meets the same gel, but for its way, which is cos(tilt) of its depth into it.
+    // A ball above the middle meets the same gel. Only its depth into the gel differs: it is
+    // cos(tilt) of its way.
     let force_n = [&level, &tilted].map(|press| largest(force_n(press).iter().copied()));
     println!("level {:.4} N, tilted {:.4} N", force_n[0], force_n[1]);
     assert!((force_n[1] / force_n[0] - 1.0).abs() < 0.02);
@@ -192,7 +196,8 @@ fn a_ball_touches_a_tilted_sensor_where_its_plane_is() {
 
 #[test]
 fn friction_takes_work_and_changes_pressures() {
-    // Little friction slips, and takes more work than much friction, which holds.
+    // A gel with little friction slips, and loses more work than a gel with much friction, which
+    // sticks.
     let [smooth, rough] = [0.0, 0.1].map(|friction| {
         let press = press(
             |r| {
@@ -208,7 +213,7 @@ fn friction_takes_work_and_changes_pressures() {
         (lost, largest(press.taxels_kpa.iter().map(|taxels| taxels[0])))
     });
     println!("lost and largest pressure: without friction {smooth:.4?}, with friction {rough:.4?}");
-    // What an elastic gel seems to lose is what lies between the computed moments.
+    // The apparent loss of an elastic gel is the interpolation error between the computed moments.
     assert!(smooth.0.abs() < 0.006 && rough.0 - smooth.0 > 0.01);
     assert!(rough.1 > 1.05 * smooth.1);
 }
@@ -251,7 +256,7 @@ fn the_wires_feel_what_is_recorded_at_once() {
                 (-felt.wrench.force_n.z, felt.taxel_pressures_kpa[0] - 101.325)
             })
             .unzip();
-        // The meshes differ: that of the wires is made for more depth than is planned.
+        // The meshes differ: the mesh for the devices is made for a larger depth than planned.
         for (at_once, felt) in [(force_n(&at_once), &felt_n), (&at_once_kpa, &felt_kpa)] {
             let differences = at_once
                 .iter()

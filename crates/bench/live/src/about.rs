@@ -1,4 +1,4 @@
-//! What is looked at.
+//! Description of the sensor that is shown.
 
 use phystac::Transfer;
 use twintac_log::Description;
@@ -8,29 +8,29 @@ use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 use twintac_source::confirmed_transfer;
 
-/// A sensor, and where its numbers come from.
+/// A sensor and the provenance of its readings.
 #[derive(Clone, Debug)]
 pub struct About {
     /// Name of the sensor description.
     pub sensor: String,
-    /// Its text, whole.
+    /// Its full text.
     pub sensor_toml: String,
     /// Names of the taxels, in the order of every frame.
     pub taxels: Vec<String>,
-    /// Their places in the gel's plane, mm.
+    /// Positions of the taxels in the gel's plane, mm.
     pub places_mm: Vec<[f64; 2]>,
-    /// Hardware or emulated.
+    /// Whether the readings are from hardware or emulated.
     pub provenance: Provenance,
-    /// What counts stand for, confirmed, where chips do not say it themselves.
+    /// The confirmed conversion from counts to pressure, if the chips do not know their own scale.
     pub transfer: Option<Transfer>,
-    /// By how much each taxel's zero moves with temperature, kPa/K; empty where nobody said.
+    /// Change of each taxel's zero with temperature, kPa/K. Empty if unknown.
     pub kpa_per_k: Vec<f64>,
-    /// When the bench's clock started: wall-clock time, ns since 1970-01-01 UTC.
+    /// Wall-clock time of the start of the bench clock, ns since 1970-01-01 UTC.
     pub start_unix_ns: u64,
 }
 
 impl About {
-    /// Of a sensor and the text of its description.
+    /// Describes a sensor from its description and the text of it.
     #[must_use]
     pub fn new(
         sensor: &Sensor,
@@ -52,7 +52,7 @@ impl About {
         }
     }
 
-    /// What a map of it shows: the taxels, and three quarters of a pitch around them, mm.
+    /// The area of a map of the sensor: the taxels with a margin of three quarters of a pitch, mm.
     #[must_use]
     pub fn window(&self) -> Rectangle {
         let margin_mm = 0.75 * pitch_mm(&self.places_mm);
@@ -63,7 +63,8 @@ impl About {
         }
     }
 
-    /// What stands at the beginning of a log. Nothing is known of a robot or a force sensor, and none is recorded.
+    /// The description for a log. Nothing is known of a robot or a force sensor, and none is
+    /// recorded.
     #[must_use]
     pub fn description(&self) -> Description {
         Description {

@@ -1,4 +1,4 @@
-//! The emulated sensor, pressed by a wandering ball, so that there is something to see.
+//! The emulated sensor, pressed by a moving ball, for trials without hardware.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ use twintac_source::{BoxedClock, TAXELS, driver_settings, emulated_scale, full_s
 
 use crate::LiveError;
 
-/// A ball that wanders around over the taxels and presses every few seconds. It is a function of time alone.
+/// A ball that moves over the taxels and presses every few seconds. It is a function of time alone.
 #[derive(Clone, Debug)]
 struct WanderingBall {
     hertz: Hertz,
@@ -22,16 +22,16 @@ struct WanderingBall {
 }
 
 impl WanderingBall {
-    /// Before the first press nothing touches for so long, s: time to take a tare.
+    /// Time without contact before the first press, s: time to take a tare.
     const FREE_S: f64 = 1.0;
     /// Time of a press, from touch to touch, s.
     const PRESS_S: f64 = 3.0;
-    /// Time of a round over the taxels, s.
+    /// Time of one round over the taxels, s.
     const ROUND_S: f64 = 19.0;
     /// Depth in the middle of a press, mm.
     const DEPTH_MM: f64 = 2.0;
 
-    /// Over a sensor's taxels, whose places become those of the physics.
+    /// A ball over a sensor's taxels. Their positions become those of the physics.
     fn over(sensor: &Sensor) -> Self {
         let hertz = Hertz {
             taxels_mm: sensor
@@ -54,7 +54,7 @@ impl WanderingBall {
         }
     }
 
-    /// Where the ball's lowest point is, mm; the surface at rest is z = 0.
+    /// Position of the ball's lowest point, mm. The surface at rest is z = 0.
     fn tip_mm(&self, time_s: f64) -> DVec3 {
         let pressing_s = (time_s - Self::FREE_S).max(0.0);
         let (sine, cosine) = (TAU * pressing_s / Self::ROUND_S).sin_cos();
@@ -76,11 +76,11 @@ impl Physics for WanderingBall {
 /// The driver of an emulated sensor.
 pub type EmulatedPhysTac = PhysTac<Bus, LabClock, BoxedClock, TAXELS>;
 
-/// A sensor as it is described, pressed by a ball that wanders around over its taxels, on [`emulated_board`], by a clock that stands at zero, with faults of its bus.
-/// There is neither robot nor force sensor.
+/// A sensor as described, on [`emulated_board`], pressed by a ball that moves over its taxels, with
+/// faults of its bus. Its clock must stand at zero. There is neither robot nor force sensor.
 ///
 /// # Errors
-/// The sensor is not read this way; a fault makes no sense.
+/// The sensor cannot be read by this driver; a fault is not valid.
 pub fn emulated_phystac(
     sensor: &Sensor,
     clock: LabClock,
@@ -99,8 +99,8 @@ pub fn emulated_phystac(
     Ok(PhysTac::new(board.bus(), clock, now, settings))
 }
 
-/// The board of a sensor that nobody has soldered: the chips that the description names. A CPS135B counts as the description confirms, else by the
-/// finest scale that reaches the description's range.
+/// The emulated board of a sensor: the chips that the description names. A CPS135B has the scale
+/// that the description confirms, else the finest scale that reaches the description's range.
 #[must_use]
 pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
     let readout = &sensor.readout;

@@ -1,4 +1,4 @@
-//! What can go wrong between a sensor and an eye.
+//! Errors of showing and recording frames.
 
 use twintac_log::LogError;
 use twintac_map::MapError;
@@ -18,7 +18,7 @@ pub enum LiveError {
     #[error("cannot write rows: {0}")]
     Write(std::io::Error),
     /// There is no terminal to draw on.
-    #[error("the dashboard: {0}; without a terminal ask for rows, as CSV or JSON lines")]
+    #[error("the dashboard: {0}; without a terminal, print rows as CSV or JSON lines")]
     Terminal(std::io::Error),
     /// A recording could not be written.
     #[error(transparent)]
@@ -26,7 +26,7 @@ pub enum LiveError {
     /// A file that says how zeros move with temperature is wrong.
     #[error(transparent)]
     Compensation(#[from] twintac_config::ConfigError),
-    /// Such a file is of no use for this sensor.
+    /// A file of that kind does not match this sensor.
     #[error("{file}: {problem}")]
     OtherCompensation {
         /// The file as it was named.

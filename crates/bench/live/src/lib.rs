@@ -1,7 +1,10 @@
-//! Frames of a sensor as they come: as rows of text, or as a dashboard on the terminal.
+//! Shows and records the frames of a tactile sensor as they come: as rows of text, as a log, or as
+//! a dashboard on the terminal.
 //!
-//! A [`FrameSource`](twintac_source::FrameSource) reads a sensor on a thread of its own. The sensor is on a wire of its own, or an emulated one
-//! ([`emulated_phystac`]). [`stream_rows`] writes rows, [`record_frames`] a log, [`dashboard::run`] draws.
+//! A [`FrameSource`](twintac_source::FrameSource) reads the sensor on a separate thread.
+//! [`Live::open`] opens it from any [`Origin`]: an I²C bus, a serial port, datagrams, a log, or the
+//! emulated sensor ([`emulated_phystac`]). [`stream_rows`] writes rows, [`record_frames`] writes a
+//! log, and [`dashboard::run`] draws the dashboard.
 //!
 //! ```
 //! use twintac_emulate::LabClock;
@@ -18,7 +21,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Pressures are in kPa above a tare, times in s of the bench's clock.
+//! Pressures in rows and on the dashboard are in kPa above a tare ([`Tare`]); times are in s of the
+//! bench clock.
+//!
+//! # How it works
+//!
+//! - One thread reads and never waits. Frames go into a bounded channel. Frames that find no room
+//!   are counted, and the frame numbers show which they were.
+//! - Counts are not pressures until a person has confirmed the scale. A reading in free air gives a
+//!   hint for the scale. Nothing is streamed on a hint alone.
+//! - The tare is the mean of the first [`Taring::FRAMES`] frames, so nothing may touch the sensor
+//!   then.
+//! - The dashboard's picture is a function of a state, [`dashboard::DashboardState`], so that tests
+//!   can check it. The loop around it draws 15 times a second.
+//! - A recording contains the frames that were taken, and marks for the missing ones. At its end a
+//!   Parquet table is written beside it.
+//! - A pressure map is linear in its readings. Therefore the share of each taxel in each cell is
+//!   computed only once (`PreparedMap` in `crates/sensor/map`).
+//!
+//! # What it does not depend on
+//!
+//! No solver, no twin and not the physics of the emulated bench (`twintac-lab`): the emulated
+//! sensor here is pressed by a ball in closed form (Hertz's contact).
 
 mod about;
 pub mod dashboard;

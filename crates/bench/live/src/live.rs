@@ -1,4 +1,4 @@
-//! A sensor that is switched on, checked and read.
+//! Opens a sensor: switches it on, checks it and reads it.
 
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
@@ -16,28 +16,28 @@ use twintac_temperature::Compensation;
 
 use crate::{About, LiveError, emulated_phystac};
 
-/// Where a sensor's frames come from.
+/// The origin of a sensor's frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// The emulated sensor of the description, in real time.
     Emulated,
-    /// A bus of Linux, `/dev/i2c-N`.
+    /// An I²C bus of Linux, `/dev/i2c-N`.
     Bus(PathBuf),
-    /// A serial port, and the file that describes what comes over it.
+    /// A serial port, and the file that describes its frames.
     Serial {
         /// `/dev/ttyACM0`, `COM3`.
         port: String,
-        /// How frames stand on the line (TOML).
+        /// The TOML file that describes frames on the line.
         line: PathBuf,
     },
-    /// Datagrams that come to a port of this computer, and the file that describes them.
+    /// Datagrams that arrive at a port of this computer, and the file that describes them.
     Udp {
         /// Where to listen, such as `0.0.0.0:9000`.
         address: String,
-        /// How frames stand in them (TOML).
+        /// The TOML file that describes frames in them.
         line: PathBuf,
     },
-    /// A log, played at its own pace.
+    /// A log, played at the pace of its recording.
     Log(PathBuf),
 }
 
@@ -46,18 +46,20 @@ pub enum Origin {
 pub struct Live {
     /// Its frames.
     pub source: FrameSource,
-    /// What it is.
+    /// Its description.
     pub about: About,
-    /// What was odd when it was switched on, a sentence each.
+    /// Observations when it was switched on, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl Live {
-    /// The sensor of a description, whose text is `sensor_toml`, from wherever its frames come. Emulated barometers count as
-    /// [`emulated_board`](crate::emulated_board) says, which needs nobody to confirm it.
+    /// Opens a sensor from any origin. `sensor_toml` is the text of its description. Emulated
+    /// barometers have the scale of [`emulated_board`](crate::emulated_board), which nobody needs
+    /// to confirm.
     ///
     /// # Errors
-    /// A wire that cannot be opened; a sensor that is not read this way, does not answer, or does not read free air.
+    /// A port or bus that cannot be opened; a sensor that cannot be read by this driver, does not
+    /// answer, or does not read free air.
     pub fn open(
         origin: &Origin,
         sensor: &Sensor,
@@ -96,7 +98,7 @@ impl Live {
                 let log = source.description();
                 if log.taxels != about(log.provenance).taxels {
                     let problem = format!(
-                        "its taxels are {}, those of sensor {} others",
+                        "its taxels {} are not those of sensor {}",
                         log.taxels.join(", "),
                         sensor.name
                     );
@@ -108,10 +110,12 @@ impl Live {
         }
     }
 
-    /// Takes off readings what temperature does to the zeros, as a file says (TOML), for tares that are taken from now on.
+    /// Subtracts the change of the zeros with temperature from readings, for tares that are taken
+    /// from now on. `file` has the coefficients (TOML).
     ///
     /// # Errors
-    /// A file that cannot be read, is wrong, or is of another sensor or lacks a taxel. Nothing is changed then.
+    /// A file that cannot be read, is wrong, is of another sensor or lacks a taxel. Then nothing is
+    /// changed.
     pub fn compensate(&mut self, file: &Path) -> Result<(), LiveError> {
         let about = &mut self.about;
         let coefficients = Compensation::read(file)?.coefficients(&about.sensor, &about.taxels);
@@ -160,8 +164,8 @@ fn clock() -> BoxedClock {
     Box::new(move || start.elapsed().as_micros() as u64) // 584 thousand years
 }
 
-/// Wall-clock time, ns since 1970-01-01 UTC; 0 on a computer that stands before.
+/// Wall-clock time, ns since 1970-01-01 UTC. 0 on a computer whose clock is before that.
 fn unix_ns() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    since.as_nanos() as u64 // until the year 2554
+    since.as_nanos() as u64 // overflows after the year 2554
 }

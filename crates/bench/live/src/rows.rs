@@ -8,16 +8,16 @@ use twintac_source::Reading;
 
 use crate::{About, Tare};
 
-/// How rows are written.
+/// The format of rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Comma-separated values under a header; what is missing is empty.
+    /// Comma-separated values under a header. A missing value is empty.
     Csv,
-    /// A JSON object a line; what is missing is null.
+    /// One JSON object per line. A missing value is null.
     JsonLines,
 }
 
-/// Writes a row for each frame. Each is flushed, so that it is seen at once.
+/// Writes one row for each frame. Each row is flushed, so that it can be read at once.
 #[derive(Debug)]
 pub struct RowWriter<W> {
     out: W,
@@ -47,7 +47,7 @@ impl<W: Write> RowWriter<W> {
     /// Writes the header, if the format has one.
     ///
     /// # Errors
-    /// What `out` says.
+    /// An error of `out`.
     pub fn new(mut out: W, format: Format, about: &About) -> io::Result<Self> {
         if format == Format::Csv {
             let mut head = ["seq", "bench_s", "provenance"].map(str::to_owned).to_vec();
@@ -68,7 +68,7 @@ impl<W: Write> RowWriter<W> {
     /// Writes a frame.
     ///
     /// # Errors
-    /// What the writer says.
+    /// An error of the writer.
     pub fn write(&mut self, reading: &Reading, tare: &mut Tare) -> io::Result<()> {
         let above_kpa = tare.above_kpa(reading);
         let taxels = self.taxels.iter().zip(&reading.frame.taxels).zip(above_kpa);
@@ -97,7 +97,8 @@ impl<W: Write> RowWriter<W> {
     }
 }
 
-/// What a part resolves is a thousand times more, and digits beyond are rounding.
+/// Rounds to 1 mPa. The resolution of a chip is a thousand times coarser, so further digits are
+/// only rounding errors.
 fn to_a_millipascal(pressure_kpa: f64) -> f64 {
     (1e6 * pressure_kpa).round() / 1e6
 }
@@ -118,7 +119,7 @@ impl Row<'_> {
     }
 }
 
-/// Writes one line, whole or not at all as far as `out` can.
+/// Writes one line with a single call, so that it is complete as far as `out` allows.
 fn write_csv(out: &mut impl Write, cells: Vec<String>) -> io::Result<()> {
     let mut line = csv::Writer::from_writer(Vec::new());
     line.write_record(cells)?;

@@ -1,4 +1,4 @@
-//! From a source to rows or a log, until enough.
+//! Writes frames of a source as rows or to a log, until a limit is reached.
 
 use std::io::{ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,43 +9,45 @@ use twintac_source::{FrameSource, Reading, SourceError, Tally};
 
 use crate::{About, Format, LiveError, RowWriter, Tare, Taring, TouchRecording};
 
-/// Longest time that a frame is waited for before the end is thought of.
+/// Longest wait for a frame before the limits are checked.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// When to end by oneself.
+/// When to end.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StopAfter {
-    /// After so many frames.
+    /// After this number of frames.
     pub frames: Option<u64>,
-    /// After so long, s of the bench's clock, from the first frame on.
+    /// After this time, s of the bench clock, from the first frame on.
     pub seconds: Option<f64>,
-    /// When this is set.
+    /// When this flag is set.
     pub asked: Option<&'static AtomicBool>,
 }
 
 impl StopAfter {
-    /// Whether so many frames, which take so long, are enough.
+    /// Whether the number of frames or their time has reached a limit.
     fn is_enough(&self, frames: u64, seconds: f64) -> bool {
         self.frames.is_some_and(|most| frames >= most) || self.seconds.is_some_and(|most| seconds >= most)
     }
 }
 
-/// What became of the frames.
+/// Totals of a stream.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Streamed {
     /// Rows that were written, or frames that were handed to the log.
     pub rows: u64,
-    /// From the first of them to the last, s of the bench's clock.
+    /// Time from the first of them to the last, s of the bench clock.
     pub seconds: f64,
-    /// What to tell a person of temperatures, if anything.
+    /// A remark for people about temperatures, if there is one.
     pub remark: Option<String>,
-    /// What the source counted meanwhile.
+    /// The source's counts.
     pub tally: Tally,
 }
 
-/// Writes rows until a limit is reached or nobody reads them any more: a pipe whose reader has gone is no error.
+/// Writes rows until a limit is reached or nobody reads them any more. A pipe whose reader has
+/// closed it is no error.
 ///
-/// The first [`Taring::FRAMES`] frames make the tare, so nothing may touch the sensor; they are rows as well. With a log, frames of rows are recorded too.
+/// The first [`Taring::FRAMES`] frames make the tare, so nothing may touch the sensor. They are
+/// written as rows too. With a log, the frames of all rows are also recorded.
 ///
 /// # Errors
 /// Those of [`FrameSource::next`]; [`LiveError::Write`]; [`LiveError::Log`].
@@ -72,10 +74,12 @@ pub fn stream_rows(
     ended(result, streamed, source)
 }
 
-/// Records frames, and writes no rows, until a limit is reached. No tare is taken: a log has what the sensor gave.
+/// Records frames without writing rows, until a limit is reached. No tare is taken: a log has the
+/// readings as the sensor gave them.
 ///
 /// # Errors
-/// Those of [`FrameSource::next`]; [`LiveError::Log`]: the log cannot be written. Frames that the disk did not keep up with are marked in it.
+/// Those of [`FrameSource::next`]; [`LiveError::Log`]: the log cannot be written. Frames for which
+/// the disk was too slow are marked in it.
 pub fn record_frames(
     source: &mut FrameSource,
     log: &mut TouchRecording,
@@ -104,7 +108,7 @@ fn record_all(
     Ok(())
 }
 
-/// The next frame, unless the end is asked for before it comes.
+/// The next frame, unless the end is requested before it comes.
 fn next(source: &mut FrameSource, limits: StopAfter) -> Result<Option<Reading>, LiveError> {
     let is_asked = || limits.asked.is_some_and(|asked| asked.load(Ordering::Relaxed));
     while !is_asked() {
@@ -115,7 +119,8 @@ fn next(source: &mut FrameSource, limits: StopAfter) -> Result<Option<Reading>, 
     Ok(None)
 }
 
-/// Hands a frame to the log. One that the disk has no time for is marked there, and the next may be taken.
+/// Hands a frame to the log. A frame for which the disk is too slow is marked there, and later ones
+/// may be accepted.
 fn record(log: &mut TouchRecording, reading: &Reading) -> Result<(), LiveError> {
     match log.push(reading) {
         Err(LiveError::Log(LogError::Behind { .. })) => Ok(()),
@@ -123,7 +128,7 @@ fn record(log: &mut TouchRecording, reading: &Reading) -> Result<(), LiveError> 
     }
 }
 
-/// What became of the frames; that there are no more is no error.
+/// The totals of a stream. The end of the source is no error.
 fn ended(
     result: Result<(), LiveError>,
     mut streamed: Streamed,
@@ -137,7 +142,7 @@ fn ended(
     }
 }
 
-/// Rows in the making.
+/// Rows that are being written.
 struct Rows<'a, W> {
     writer: RowWriter<W>,
     log: Option<&'a mut TouchRecording>,
@@ -174,7 +179,7 @@ impl<W: Write> Rows<'_, W> {
         Ok(())
     }
 
-    /// Writes a row, unless there are enough.
+    /// Writes a row, unless a limit is reached. Returns whether a limit is reached.
     fn write(&mut self, reading: &Reading, tare: &mut Tare) -> Result<bool, LiveError> {
         let seconds = reading.bench_s - self.first_s;
         let is_enough = self.limits.is_enough(self.streamed.rows, seconds);

@@ -1,19 +1,21 @@
-//! What the taxels read untouched.
+//! Tare: the readings of the taxels without contact.
 
 use twintac_log::TactileFrame;
 use twintac_source::Reading;
 use twintac_temperature::Warmth;
 
-/// The pressure that each taxel reads untouched; what is above it is touch. Where it is known how zeros move with temperature, it moves with them.
+/// The pressure that each taxel reads without contact. The pressure above it is due to touch. If
+/// the change of the zeros with temperature is known, the tare follows it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tare {
-    /// kPa, absolute, when it was taken; `None` of a taxel that gave none.
+    /// Absolute pressure when the tare was taken, kPa. `None` for a taxel without a reading.
     pub baseline_kpa: Vec<Option<f64>>,
     warmth: Warmth,
 }
 
 impl Tare {
-    /// Pressures above it, kPa; none of a taxel that gives none, or gave none then. Frames are handed over in their order.
+    /// Pressures above the tare, kPa. `None` for a taxel without a reading now or at the tare.
+    /// Frames must be passed in their order.
     #[must_use]
     pub fn above_kpa(&mut self, reading: &Reading) -> Vec<Option<f64>> {
         self.warmth
@@ -25,48 +27,52 @@ impl Tare {
         taxels.enumerate().map(above).collect()
     }
 
-    /// How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures.
+    /// Temperature change since the tare of the chip that changed most, K; negative if it is
+    /// colder. `None` without temperatures.
     #[must_use]
     pub fn warmer_k(&self) -> Option<f64> {
         self.warmth.warmer_k()
     }
 
-    /// What to tell a person where chips have another temperature than at the tare, and nobody said how zeros move with it.
+    /// A remark for people if chips have another temperature than at the tare and the change of the
+    /// zeros with temperature is unknown.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let warmer_k = self
             .warmer_k()
             .filter(|k| k.abs() >= NOTABLE_K && !self.warmth.compensates())?;
         Some(format!(
-            "the chips are {:.1} K {} than at the tare, and zeros move with it: `twintac characterize` finds by how much from a log without touch, and \
-             `--temperature` takes it off; or take a new tare",
+            "the chips are {:.1} K {} than at the tare, so that the zeros have drifted: take a new tare, or compensate with `--temperature` and the file that \
+             `twintac characterize` makes from a log without touch",
             warmer_k.abs(),
             if warmer_k > 0.0 { "warmer" } else { "colder" }
         ))
     }
 }
 
-/// Change of temperature from which on a person should know, K: most zeros move by some tenths of a kPa then.
+/// Temperature change from which on a person is told, K. Most zeros then change by some tenths of a
+/// kPa.
 const NOTABLE_K: f64 = 1.0;
 
 fn temperatures_c(frame: &TactileFrame) -> Vec<Option<f64>> {
     frame.taxels.iter().map(|taxel| taxel.temperature_c).collect()
 }
 
-/// A tare while it is taken: the mean of [`Taring::FRAMES`] frames.
+/// A tare that is being taken: the mean of [`Taring::FRAMES`] frames.
 #[derive(Clone, Debug, Default)]
 pub struct Taring {
     frames: usize,
-    /// Sum, kPa, and number of pressures, of each taxel.
+    /// Sum, kPa, and number of pressures of each taxel.
     sums: Vec<(f64, u32)>,
     warmth: Warmth,
 }
 
 impl Taring {
-    /// Frames that make a tare: a quarter of a second; noise of 15 Pa becomes 3 Pa.
+    /// Number of frames of a tare: a quarter of a second. Noise of 15 Pa becomes 3 Pa.
     pub const FRAMES: usize = 32;
 
-    /// A tare of a sensor whose zeros move with temperature by so much, kPa/K, each; empty where nothing is known.
+    /// Begins a tare. `kpa_per_k` is the change of each zero with temperature, kPa/K; empty if
+    /// unknown.
     #[must_use]
     pub fn new(kpa_per_k: Vec<f64>) -> Self {
         Self {
@@ -75,7 +81,7 @@ impl Taring {
         }
     }
 
-    /// Takes a frame, and gives the tare with the last one.
+    /// Adds a frame. Returns the tare with the last one.
     pub fn push(&mut self, reading: &Reading) -> Option<Tare> {
         let frame = &reading.frame;
         self.warmth.update(reading.bench_s, &temperatures_c(frame));

@@ -1,4 +1,4 @@
-//! Logs of frames as they come.
+//! Records frames as they come.
 
 use std::path::{Path, PathBuf};
 
@@ -7,22 +7,22 @@ use twintac_source::Reading;
 
 use crate::{About, LiveError};
 
-/// Files that are looked for a free name.
+/// Largest number of file names that are tried.
 const MOST_FILES: u32 = 10_000;
 
-/// A log of frames, while it is written.
+/// A log of frames that is being written.
 #[derive(Debug)]
 pub struct TouchRecording {
     recorder: Recorder,
     sender: LogSender,
     path: PathBuf,
     frames: u64,
-    /// Number and time of the last frame that was taken.
+    /// Number and time of the last frame.
     last: Option<(u64, f64)>,
 }
 
 impl TouchRecording {
-    /// Begins `touch-0001.mcap` in a folder, or the first after it that is not there.
+    /// Begins `touch-0001.mcap` in a folder, or the first free number after it.
     ///
     /// # Errors
     /// [`LiveError::Log`].
@@ -43,7 +43,7 @@ impl TouchRecording {
     /// Begins a file; its name ends in `.partial` until it is finished.
     ///
     /// # Errors
-    /// [`LiveError::Log`]: it is there already, or cannot be written.
+    /// [`LiveError::Log`]: it exists already, or cannot be written.
     pub fn create(path: &Path, about: &About) -> Result<Self, LiveError> {
         let recorder = Recorder::create(path, &about.description())?;
         Ok(Self {
@@ -67,10 +67,10 @@ impl TouchRecording {
         self.frames
     }
 
-    /// Hands a frame over to be written, and never waits. Frames that are missing before it are marked.
+    /// Hands a frame to the log, and never waits. Frames that are missing before it are marked.
     ///
     /// # Errors
-    /// [`LiveError::Log`]: the disk does not keep up, which the log marks as a gap, or fails.
+    /// [`LiveError::Log`]: the disk is too slow, which the log marks as a gap, or fails.
     pub fn push(&mut self, reading: &Reading) -> Result<(), LiveError> {
         if let Some((sequence, last_s)) = self.last
             && reading.sequence > sequence + 1
@@ -93,7 +93,8 @@ impl TouchRecording {
         Ok(())
     }
 
-    /// Writes what waits, gives the file its name, and puts a table of its frames beside it, with the ending `.parquet`. How many frames it has.
+    /// Writes the waiting frames, gives the file its final name, and writes a table of its frames
+    /// beside it, with the ending `.parquet`. Returns the number of frames.
     ///
     /// # Errors
     /// [`LiveError::Log`].

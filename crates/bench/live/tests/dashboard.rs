@@ -1,4 +1,4 @@
-//! The dashboard's picture, on a terminal that is none.
+//! The dashboard's picture, on a test terminal.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -14,7 +14,7 @@ use twintac_live::TouchRecording;
 use twintac_live::dashboard::{DashboardState, RecordingStatus, draw};
 use twintac_log::{Body, Event, LogReader};
 
-/// The state after so many frames.
+/// The state after a number of frames.
 fn state(frames: usize, faults: &[ScheduledFault]) -> DashboardState {
     let (mut reader, about) = reader(faults);
     let mut state = DashboardState::new(about).unwrap();
@@ -53,7 +53,7 @@ fn a_press_shows_in_map_and_traces() {
 
 #[test]
 fn the_map_is_brightest_where_it_is_pressed() {
-    let state = state(250, &[]); // the middle of the first press, at the right
+    let state = state(250, &[]); // the middle of the first press, on the right
     assert!(state.above_kpa()[3].unwrap() > 4.0, "{:?}", state.above_kpa());
     let (_, buffer) = picture(&state, 100, 22);
     let brightness = |position: (u16, u16)| match buffer[position].bg {

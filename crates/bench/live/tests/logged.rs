@@ -1,4 +1,4 @@
-//! From the emulated sensor to a log, with rows or without.
+//! From the emulated sensor to a log, with rows and without.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -23,7 +23,7 @@ fn frames(path: &Path) -> (Vec<TactileFrame>, Option<Ending>) {
     (frames.collect(), reader.ending())
 }
 
-/// A source of which no frame is missed, and a log of it.
+/// A source that misses no frame, and a log of it.
 fn begin(path: &Path) -> (FrameSource, About, TouchRecording) {
     let (reader, about) = reader(&[]);
     let source = FrameSource::start(reader, 100_000).unwrap();

@@ -1,4 +1,5 @@
-//! The whole range of the sensor, from the pressure at the chips to the reading: what is beyond it is flagged, and nothing wraps.
+//! The whole range of the sensor, from the pressure at the chips to the reading. Readings beyond
+//! the range are flagged, and none wraps around.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -16,14 +17,14 @@ use twintac_rig::TcpPose;
 use twintac_source::{BoxedClock, FrameReader, Known, TAXELS, driver_settings, power_on};
 
 const AIR_KPA: f64 = 101.325;
-/// Time of a step, s: five frames, so that no value is taken for frozen.
+/// Time of a step, s: five frames, so that no value counts as frozen.
 const STEP_S: f64 = 0.05;
 const STEP_KPA: f64 = 10.0;
-/// Free air comes first.
+/// Time in free air before the steps, s.
 const FREE_S: f64 = 0.2;
 const BEYOND_KPA: f64 = 2400.0;
 
-/// Stairs from a vacuum to beyond all ranges; each channel is somewhere else on its step.
+/// Pressure steps from a vacuum to beyond all ranges. The channels differ within a step.
 struct Stairs;
 
 impl Stairs {
@@ -46,7 +47,7 @@ impl Physics for Stairs {
     }
 }
 
-/// A board of noiseless parts on the stairs, after it was switched on.
+/// The reader of a board of noiseless parts with these pressures, after power-up.
 fn reader(board: &BoardSettings) -> FrameReader<Bus, LabClock, BoxedClock, TAXELS> {
     let clock = LabClock::virtual_time();
     let nowhere = TcpPose {
@@ -68,8 +69,8 @@ fn reader(board: &BoardSettings) -> FrameReader<Bus, LabClock, BoxedClock, TAXEL
     FrameReader::new(phystac, &checked)
 }
 
-/// Climbs the stairs. Within the range every reading is true to half a count, beyond it every one is flagged.
-/// How many of each there were.
+/// Applies all steps. Checks that every reading within the range is right to half a count, and that
+/// every reading beyond it is flagged. Returns the number of each.
 fn climb(board: &BoardSettings, range_kpa: [f64; 2]) -> [usize; 2] {
     let mut reader = reader(board);
     let (mut n_good, mut n_saturated) = (0, 0);
@@ -82,7 +83,8 @@ fn climb(board: &BoardSettings, range_kpa: [f64; 2]) -> [usize; 2] {
             .iter()
             .map(|taxel| 1e-6 * taxel.read_us as f64);
         let end_s = ends_s.fold(reading.bench_s, f64::max);
-        // Two thousandths of a second: the scene mixes steps linearly between its own.
+        // Two milliseconds margin, because the workcell interpolates linearly between its own
+        // steps.
         if reading.bench_s < FREE_S || step(reading.bench_s - 2e-3) != step(end_s + 2e-3) {
             continue;
         }

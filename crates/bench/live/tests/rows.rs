@@ -20,7 +20,7 @@ use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
 use twintac_source::{FrameReader, FrameSource, Known, SourceError, power_on};
 
-/// So many frames as text, read and written on one thread.
+/// A number of frames as text, read and written on one thread.
 fn rows(format: Format, frames: usize, faults: &[ScheduledFault]) -> String {
     let (mut reader, about) = reader(faults);
     let mut out = Vec::new();
@@ -74,7 +74,7 @@ fn what_is_pressed_rises_and_what_is_not_stays_and_it_repeats_bit_for_bit() {
         .map(|text| text.parse().unwrap())
         .collect();
     assert!(times_s.is_sorted() && times_s[0] < 0.5);
-    // The first press, from 1 s on, is at the right and moves up to t7, far from t0.
+    // The first press, from 1 s on, is on the right and moves up to t7, far from t0.
     let peak_kpa = |name: &str| {
         let values = column(&csv, name)
             .into_iter()
@@ -113,7 +113,7 @@ fn a_frozen_barometer_keeps_its_counts_and_has_no_pressure() {
     };
     let workcell = Workcell::new(clock.clone(), Hertz::default(), tool, ArmSettings::default());
     let mut board = BoardSettings::default();
-    board.barometer.noise_pa = 0.0; // no living part reads the same again and again
+    board.barometer.noise_pa = 0.0; // without noise a part reads the same again and again, which no working part does
     let board = Board::new(workcell, &board, &[]).unwrap();
     let now = clock.clone();
     let phystac = PhysTac::new(board.bus(), clock, move || now.now_us(), Settings::<8>::default());
@@ -171,7 +171,7 @@ fn a_stream_ends_at_its_limits() {
     assert!((1.45..1.5).contains(&streamed.seconds), "{streamed:?}");
 }
 
-/// A pipe whose reader goes after so many bytes, or a disk that is full.
+/// A pipe whose reader closes it after a number of bytes, or a disk that is full.
 struct Ending(usize, ErrorKind, Arc<Mutex<usize>>);
 
 impl Write for Ending {
@@ -218,19 +218,24 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
 fn no_scale_is_guessed() {
     let check = |known| power_on(&mut phystac(&[]), &sensor(), &known);
     let said = check(Known::default()).unwrap_err().to_string();
-    assert!(said.contains("free air hints at 8 counts per Pa"), "{said}");
+    assert!(
+        said.contains("the readings in free air suggest 8 counts per Pa"),
+        "{said}"
+    );
     assert!(
         said.contains("`--scale 8`") && said.contains("`counts_per_pa = 8` under [readout]"),
         "{said}"
     );
     let said = check(scale(32)).unwrap_err().to_string();
     assert!(
-        said.contains("with 32 counts per Pa 0 of 8 taxels read free air: free air hints at 8"),
+        said.contains(
+            "with 32 counts per Pa 0 of 8 taxels read free air: the readings in free air suggest 8"
+        ),
         "{said}"
     );
     let confirmed = check(scale(8)).unwrap();
     assert_eq!(confirmed.notes, Vec::<String>::new());
-    // 1500 kPa, the description's range, need 24 bits.
+    // The description's range, 1500 kPa, needs 24 bits.
     assert_eq!(
         confirmed.transfer,
         Some(Transfer {
@@ -281,7 +286,7 @@ fn other_chips_need_nobody_to_confirm_a_scale_and_a_sensor_without_wiring_is_ref
     );
 }
 
-/// A bus that nothing answers on.
+/// A bus on which nothing answers.
 struct Dead;
 
 impl i2c::ErrorType for Dead {

@@ -1,4 +1,4 @@
-//! A bus that hangs: it neither gives frames nor fails.
+//! A hung bus: it gives neither frames nor errors.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 

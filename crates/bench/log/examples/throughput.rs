@@ -1,7 +1,8 @@
-//! How many messages a second a recorder writes, and how long handing one over takes at most.
+//! Measures how many messages a second a recorder writes, and the longest time of handing one over.
 //!
-//! `cargo run --release -p twintac-log --example throughput -- <folder>` writes a minute of a bench (8 taxels at 100 Hz,
-//! a force sensor at 7 kHz, a robot at 100 Hz) into the folder as fast as the disk takes it, syncing twice for each second.
+//! `cargo run --release -p twintac-log --example throughput -- <folder>` writes one minute of a
+//! test setup (8 taxels at 100 Hz, a force sensor at 7 kHz, a robot at 100 Hz) into the folder as
+//! fast as the disk accepts it, with two syncs for each second.
 
 #![allow(clippy::print_stdout)] // its results
 
@@ -20,7 +21,8 @@ use twintac_shape::Pose;
 
 const SECONDS: u64 = 60;
 const NS_PER_S: u64 = 1_000_000_000;
-/// Rate of the force sensor, Hz; every seventieth time the others have something to say too.
+/// Rate of the force sensor, Hz. The other devices send a message with every seventieth of its
+/// readings.
 const RATE_HZ: u64 = 7000;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,8 +1,8 @@
-//! What a log takes.
+//! Checks of messages before they are written.
 
 use crate::{Body, Description, LogError, Message};
 
-/// What a description promises of every message.
+/// The properties of the description that every message must match.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accepts {
     taxels: usize,
@@ -17,10 +17,11 @@ impl Accepts {
         }
     }
 
-    /// The message's time on the wall clock, ns, if it can be written.
+    /// Returns the message's time on the wall clock, ns, if the message can be written.
     ///
     /// # Errors
-    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that is no JSON, or a time beyond 64 bits.
+    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that cannot be JSON,
+    /// or a time beyond 64 bits.
     pub(crate) fn check(&self, message: &Message) -> Result<u64, LogError> {
         let invalid = |what, problem: String| Err(LogError::Invalid { what, problem });
         match &message.body {

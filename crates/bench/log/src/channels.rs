@@ -1,4 +1,4 @@
-//! The channels of a file that is read, and which of their messages are missing.
+//! The channels of a file, and which of their messages are missing.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::mcap::Statistics;
 use crate::ros::stream_of;
 use crate::{Event, Stream};
 
-/// Why messages are missing that were written.
+/// Cause of the gap if messages that were written are missing.
 pub(crate) const DAMAGED: &str = "the file is damaged";
 
 /// The channels that are read back, by number.
@@ -18,16 +18,16 @@ struct Channel {
     stream: Stream,
     /// Number of the next message.
     next: u32,
-    /// Messages that were read or are known to be missing.
+    /// Number of messages that were read or are known to be missing.
     accounted: u64,
-    /// Time of the last message, on the bench's clock, ns.
+    /// Time of the last message on the bench clock, ns.
     latest_ns: u64,
-    /// Whether what is missing since the last message is marked already.
+    /// Whether the messages missing since the last one are already marked by a gap.
     is_excused: bool,
 }
 
 impl Channels {
-    /// A channel that the file declares; again in its summary.
+    /// A channel that the file declares. The summary declares it again.
     pub(crate) fn note(&mut self, id: u16, topic: &str, schema: &str) {
         if let Some(stream) = stream_of(topic, schema) {
             self.0.entry(id).or_insert(Channel {
@@ -40,9 +40,11 @@ impl Channels {
         }
     }
 
-    /// Counts a message: its stream, and whether messages before it are missing without a mark. `None` of a channel that is passed over.
+    /// Counts a message. Returns its stream and whether messages before it are missing without a
+    /// mark. `None` for a channel that is not read.
     ///
-    /// Messages are numbered from 0. Programs that do not number them write 0, which is no jump ahead.
+    /// Messages are numbered from 0. Programs that do not number them write 0, which is not a jump
+    /// ahead.
     pub(crate) fn count(&mut self, id: u16, sequence: u32) -> Option<(Stream, bool)> {
         let channel = self.0.get_mut(&id)?;
         let missing = sequence.wrapping_sub(channel.next);
@@ -59,14 +61,16 @@ impl Channels {
         }
     }
 
-    /// A gap in all streams is marked before a message of one: what the others miss up to their next message is of it.
+    /// A gap in all streams is marked before a message of the stream `but`. Messages that other
+    /// streams miss before their next message belong to the same gap.
     pub(crate) fn excuse(&mut self, but: Stream) {
         for channel in self.0.values_mut() {
             channel.is_excused |= channel.stream != but;
         }
     }
 
-    /// The gaps at the end: what the file's own count has more, stream by stream. `to_ns` is the end on the bench's clock.
+    /// The gaps at the end: messages of each stream that the file counts but that were not read.
+    /// `to_ns` is the end on the bench clock.
     pub(crate) fn gaps_at_end(&self, statistics: &Statistics, to_ns: u64) -> Vec<Event> {
         let gap = |(id, channel): (&u16, &Channel)| {
             let count = statistics.counts.get(id).copied().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! What a log is about.
+//! The description of a log.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,58 +10,62 @@ use twintac_shape::Pose;
 
 use crate::LogError;
 
-/// Version of the topics and messages in a log; readers refuse others.
+/// Version of the topics and messages in a log. Readers refuse other versions.
 const VERSION: u32 = 1;
-/// Most taxels of a sensor: each has two channels of the file, which are numbered with 16 bits.
+/// Most taxels of a sensor. Each has two channels of the file, and channel numbers have 16 bits.
 const MOST_TAXELS: usize = 10_000;
 const UNIT_TOLERANCE: f64 = 1e-6;
-/// Key of the checksum of the other entries: they say when and where all that follows was.
+/// Key of the checksum of the other entries, because these state the time and the frame of all
+/// messages.
 const CHECKSUM: &str = "checksum";
 
-/// What a log is about. It stands in the file before the first message, so that a log that was cut has it.
+/// The description of a log. It is in the file before the first message, so a cut log has it too.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Description {
     /// Name of the sensor description.
     pub sensor: String,
-    /// Text of the sensor description, whole.
+    /// Full text of the sensor description.
     pub sensor_toml: String,
-    /// Where the numbers come from.
+    /// Provenance of the numbers.
     pub provenance: Provenance,
     /// Taxel names, in the order of every frame.
     pub taxels: Vec<String>,
-    /// What the taxels' counts stand for, if they count.
+    /// The conversion from the taxels' counts to pressure, if they have counts.
     pub transfer: Option<CountTransfer>,
-    /// Where the gel stands in the robot's base frame.
+    /// Pose of the gel in the robot's base frame.
     pub base_from_gel: Pose,
-    /// Where the indenter sits in the robot's tool frame.
+    /// Pose of the indenter in the robot's tool frame.
     pub tool_from_indenter: Pose,
-    /// Direction in the force/torque sensor's frame such that `force · axis` is the force of the indenter on the gel along -z: `-z` for a
-    /// sensor under the gel whose z is up. A unit vector.
+    /// Direction in the force/torque sensor's frame, a unit vector. `force · axis` is the force of
+    /// the indenter on the gel along -z. For a sensor under the gel whose z axis points up, it is
+    /// `-z`.
     pub force_axis: DVec3,
-    /// When the bench's clock started: wall-clock time, ns since 1970-01-01 UTC. Times in the file are this plus the bench's clock.
+    /// Wall-clock time of the start of the bench clock, ns since 1970-01-01 UTC. Times in the file
+    /// are the sum of this and the bench clock.
     pub start_unix_ns: u64,
-    /// Versions of what recorded: programs, firmware.
+    /// Versions of the programs and firmware that recorded.
     pub versions: BTreeMap<String, String>,
 }
 
-/// What counts stand for: `pressure_pa = pa_per_count · counts + offset_pa`.
+/// Conversion from counts to pressure: `pressure_pa = pa_per_count · counts + offset_pa`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CountTransfer {
     /// Pascal per count.
     pub pa_per_count: f64,
     /// Pressure at 0 counts, Pa.
     pub offset_pa: f64,
-    /// Whether the counter's bits are two's complement.
+    /// Whether counts are in two's complement.
     pub signed: bool,
-    /// Whether somebody who knows the parts confirmed it.
+    /// Whether a person who knows the parts has confirmed it.
     pub is_confirmed: bool,
 }
 
 impl Description {
-    /// Checks that names are there and unique, numbers finite, rotations unit quaternions, and the force's axis a unit vector.
+    /// Checks that names exist and are unique, numbers are finite, rotations are unit quaternions,
+    /// and the force axis is a unit vector.
     ///
     /// # Errors
-    /// [`LogError::Invalid`] for the first that does not hold.
+    /// [`LogError::Invalid`] for the first condition that is not met.
     pub fn check(&self) -> Result<(), LogError> {
         let expect = |holds: bool, what, problem: &str| {
             let problem = problem.to_owned();
@@ -69,7 +73,7 @@ impl Description {
         };
         let names: BTreeSet<&String> = self.taxels.iter().filter(|name| !name.is_empty()).collect();
         let are_unique = names.len() == self.taxels.len();
-        expect(are_unique, "taxels", "a name is empty or there twice")?;
+        expect(are_unique, "taxels", "a name is empty or given twice")?;
         expect(self.taxels.len() <= MOST_TAXELS, "taxels", "more than 10 000")?;
         if let Some(transfer) = self.transfer {
             let is_finite = transfer.pa_per_count.is_finite() && transfer.offset_pa.is_finite();
@@ -81,13 +85,13 @@ impl Description {
         ] {
             let is_unit = (pose.rotation.length() - 1.0).abs() <= UNIT_TOLERANCE;
             expect(pose.position_mm.is_finite(), what, "a number is not finite")?;
-            expect(is_unit, what, "the rotation is no unit quaternion")?;
+            expect(is_unit, what, "the rotation is not a unit quaternion")?;
         }
         let is_unit = (self.force_axis.length() - 1.0).abs() <= UNIT_TOLERANCE;
         expect(is_unit, "force_axis", "expected a unit vector")
     }
 
-    /// Field by field, each value as JSON.
+    /// Each field with its value as JSON.
     pub(crate) fn to_map(&self) -> Result<BTreeMap<String, String>, LogError> {
         self.check()?;
         let invalid = |problem: String| LogError::Invalid {
@@ -106,13 +110,13 @@ impl Description {
         Ok(map)
     }
 
-    /// What is wrong comes back as a text.
+    /// The error is a text that says what is wrong.
     pub(crate) fn from_map(map: &BTreeMap<String, String>) -> Result<Self, String> {
         let version = map.get("log_version").map_or("none", String::as_str);
         if version != VERSION.to_string() {
             return Err(format!("its log version is {version}, expected {VERSION}"));
         }
-        // Older logs have none.
+        // Older logs have no checksum.
         if map
             .get(CHECKSUM)
             .is_some_and(|written| *written != checksum(map).to_string())
@@ -131,7 +135,7 @@ impl Description {
     }
 }
 
-/// CRC-32 of all entries but the checksum itself.
+/// CRC-32 of all entries except the checksum.
 fn checksum(map: &BTreeMap<String, String>) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in map.iter().filter(|(key, _)| *key != CHECKSUM) {

@@ -1,4 +1,4 @@
-//! What can go wrong with logs.
+//! Errors of logs.
 
 use std::path::Path;
 
@@ -10,7 +10,8 @@ use crate::Stream;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogError {
-    /// A log could not be created, written or put in its place. What was flushed before is readable.
+    /// A log could not be created, written or renamed to its final name. What was flushed before is
+    /// readable.
     #[error("cannot write {file}: {source}")]
     Write {
         /// The file as the user named it.
@@ -26,13 +27,13 @@ pub enum LogError {
         /// What the operating system says.
         source: std::io::Error,
     },
-    /// A log would take the place of another file.
+    /// A log would replace another file.
     #[error("{file} exists already; a log never replaces a file")]
     Exists {
-        /// The file that is there.
+        /// The file that exists.
         file: String,
     },
-    /// The file is no log, or was cut before it said what it is about.
+    /// The file is no log, or was cut before the end of its description.
     #[error("{file} is not a readable log: {problem}")]
     NotALog {
         /// The file as the user named it.
@@ -48,22 +49,22 @@ pub enum LogError {
         /// What is wrong with it.
         problem: String,
     },
-    /// The disk does not keep up: this message is lost. The log marks the gap as soon as there is room.
+    /// The disk is too slow: this message is lost. The log marks the gap as soon as there is room.
     #[error("the log does not keep up: {queued} messages wait, one of {stream} is lost")]
     Behind {
-        /// Where the lost message belongs.
+        /// The stream of the lost message.
         stream: Stream,
-        /// Messages that wait to be written.
+        /// Number of messages that wait to be written.
         queued: usize,
     },
-    /// The log takes no more messages: it was finished, or an earlier write failed.
+    /// The log accepts no more messages: it was finished, or an earlier write failed.
     #[error("the log takes no more messages: {why}")]
     Stopped {
         /// Why.
         why: String,
     },
-    /// Presses in a log need the indenter's pose, and there is none.
-    #[error("{file} holds no robot poses: its presses cannot be placed")]
+    /// Presses in a log need the indenter's pose, and the log has none.
+    #[error("{file} has no robot poses, so that the locations of its presses are unknown")]
     NoPoses {
         /// The file as the user named it.
         file: String,

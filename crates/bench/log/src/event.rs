@@ -1,4 +1,4 @@
-//! What happens once.
+//! Single events.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -6,12 +6,12 @@ use twintac_recording::Control;
 
 use crate::Stream;
 
-/// Something that happened once. In files it is JSON, told apart by `event`.
+/// Something that happened once. In files it is JSON, with the kind in the field `event`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Event {
-    /// A press begins: the indenter does not touch the gel yet.
+    /// A press begins. The indenter does not touch the gel yet.
     PressBegun {
         /// Name of the press.
         name: String,
@@ -20,39 +20,40 @@ pub enum Event {
         /// What drives the indenter.
         control: Control,
     },
-    /// A press is over: the indenter does not touch the gel any more.
+    /// A press has ended. The indenter does not touch the gel any more.
     PressEnded {
         /// Name of the press.
         name: String,
     },
-    /// Readings of the force/torque sensor that are no load, from now on; counted from the sensor's own zero.
+    /// The readings of the force/torque sensor that are zero load from now on, relative to the
+    /// sensor's own zero.
     Tare {
-        /// Force to take off, N, in the sensor's frame.
+        /// Force to subtract, N, in the sensor's frame.
         force_n: DVec3,
-        /// Torque to take off, N mm, in the sensor's frame.
+        /// Torque to subtract, N mm, in the sensor's frame.
         torque_n_mm: DVec3,
     },
     /// Messages are missing.
     Gap {
-        /// Where; `None`: in all streams.
+        /// The stream. `None`: all streams.
         stream: Option<Stream>,
-        /// Why.
+        /// The cause.
         cause: String,
-        /// Its start on the bench's clock, ns.
+        /// Its start on the bench clock, ns.
         from_ns: u64,
-        /// Its end on the bench's clock, ns.
+        /// Its end on the bench clock, ns.
         to_ns: u64,
-        /// How many messages are missing, if that is known.
+        /// Number of missing messages, if known.
         lost: Option<u64>,
     },
-    /// The bench stopped before its time.
+    /// The test setup stopped early.
     Stopped {
-        /// Why.
+        /// The cause.
         cause: String,
     },
-    /// What a person wants to be remembered.
+    /// A note of a person.
     Note {
-        /// Their words.
+        /// The text.
         text: String,
     },
 }

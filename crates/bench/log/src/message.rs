@@ -1,44 +1,45 @@
-//! What a bench streams.
+//! Messages of a test setup.
 
 use glam::{DQuat, DVec3};
 use phystac::TaxelState;
 
 use crate::{Event, Stream};
 
-/// Something that happened on the bench, and when.
+/// Something that happened on the test setup, with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
-    /// When, on the bench's clock, ns since [`Description::start_unix_ns`](crate::Description::start_unix_ns). For a tactile
-    /// frame: when its taxels were triggered.
+    /// Time on the bench clock, ns since
+    /// [`Description::start_unix_ns`](crate::Description::start_unix_ns). For a tactile frame this
+    /// is when its taxels were triggered.
     pub bench_ns: u64,
-    /// What.
+    /// The content.
     pub body: Body,
 }
 
-/// What happened.
+/// The content of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body {
     /// All taxels were read.
     Tactile(TactileFrame),
     /// The force/torque sensor was read.
     Wrench(WrenchReading),
-    /// The robot said where its tool is.
+    /// The robot reported the pose of its tool.
     Pose(PoseReading),
     /// Something happened once.
     Event(Event),
 }
 
 impl Message {
-    /// A message at a time of the bench's clock, s since its start; to the nearest ns.
+    /// A message at a time of the bench clock, s since its start, rounded to ns.
     #[must_use]
     pub fn at_s(bench_s: f64, body: Body) -> Self {
         Self {
-            bench_ns: (bench_s * 1e9).round() as u64, // negative and NaN give 0, too large gives the largest
+            bench_ns: (bench_s * 1e9).round() as u64, // negative and NaN give 0, too large values give the largest number
             body,
         }
     }
 
-    /// Where it belongs.
+    /// The stream of the message.
     #[must_use]
     pub fn stream(&self) -> Stream {
         match self.body {
@@ -59,14 +60,14 @@ pub struct TactileFrame {
     pub taxels: Vec<TaxelReading>,
 }
 
-/// What one taxel gave.
+/// The reading of one taxel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelReading {
-    /// Whether its pressure can be used, or why not.
+    /// Whether its pressure can be used, and if not, why.
     pub state: TaxelState,
     /// When it was read, on the sensor's own clock, µs.
     pub read_us: u64,
-    /// What it counted, if it gave anything. `i32::MIN` is no count.
+    /// Its counts, if it gave a reading. `i32::MIN` means no count.
     pub counts: Option<i32>,
     /// Pressure, Pa, if it gave one.
     pub pressure_pa: Option<f64>,
@@ -74,12 +75,12 @@ pub struct TaxelReading {
     pub temperature_c: Option<f64>,
 }
 
-/// One reading of the force/torque sensor, as the sensor gives it: no tare is taken off.
+/// One reading of the force/torque sensor, as the sensor gives it, without subtracting a tare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrenchReading {
     /// When it was measured, on the source's own clock, s, if it has one.
     pub source_s: Option<f64>,
-    /// The source's number of the reading, if it has one.
+    /// The number that the source gave to the reading, if it has one.
     pub sequence: Option<u32>,
     /// The source's status bits; 0 is healthy.
     pub status: u32,
@@ -91,13 +92,13 @@ pub struct WrenchReading {
     pub torque_n_mm: DVec3,
 }
 
-/// Where the robot's tool is.
+/// Pose of the robot's tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseReading {
     /// When it was measured, on the robot's own clock, s, if it has one.
     pub source_s: Option<f64>,
     /// The tool's origin in the robot's base frame, mm.
     pub position_mm: DVec3,
-    /// From the tool's to the base's frame, a unit quaternion.
+    /// Rotation from the tool's frame to the base frame, a unit quaternion.
     pub base_from_tool: DQuat,
 }

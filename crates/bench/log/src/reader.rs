@@ -1,4 +1,4 @@
-//! An MCAP file in, messages out.
+//! Reads messages from an MCAP file.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -11,36 +11,38 @@ use crate::ros::decode;
 use crate::writer::DESCRIPTION;
 use crate::{Body, Description, Event, LogError, Message, Stream};
 
-/// How a log ends, and whether it is as it was written.
+/// How a log ends, and whether it is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// It was finished, and all its checksums match.
     Whole,
-    /// It was finished, but has changed since: messages that are missing are marked as gaps. Without a gap, what has changed stands outside of
-    /// the messages: what the log says of the sensor and the bench may be wrong.
+    /// It was finished, but has changed since. Missing messages are marked as gaps. Without a gap,
+    /// the change is outside of the messages: what the log says about the sensor and the test setup
+    /// may be wrong.
     Damaged,
-    /// It was cut, or its end is damaged: this is what was flushed before.
+    /// It was cut, or its end is damaged. The log holds what was flushed before.
     Cut,
 }
 
-/// Reads a log from its start, whole or cut: an iterator over its messages, in the order in which they were written.
+/// Reads a log from its start, complete or cut: an iterator over its messages, in the order in
+/// which they were written.
 ///
-/// Messages that were damaged on the disk, or are missing by their numbers, become an [`Event::Gap`]. Channels of others are passed over.
-/// Memory does not grow with the file.
+/// Messages that were damaged on the disk, or whose numbers are missing, become an [`Event::Gap`].
+/// Channels of other programs are skipped. Memory does not grow with the file.
 #[derive(Debug)]
 pub struct LogReader<R> {
     scanner: Scanner<R>,
     file: String,
     description: Description,
-    /// What is read back, by number of the channel.
+    /// The channels that are read back, by number.
     channels: Channels,
-    /// Latest time so far, on the bench's clock, ns.
+    /// Latest time so far on the bench clock, ns.
     latest_ns: u64,
     /// Whether something is missing before the next message.
     is_damaged: bool,
     /// Whether something was missing.
     was_damaged: bool,
-    /// Gaps, and the message behind them.
+    /// Gaps, and the message after them.
     held: VecDeque<Message>,
     ending: Option<Ending>,
 }
@@ -57,7 +59,7 @@ impl LogReader<BufReader<File>> {
 }
 
 impl<R: Read> LogReader<R> {
-    /// Reads a log from anything; `file` names it in errors.
+    /// Reads a log from any reader. `file` is the name in errors.
     ///
     /// # Errors
     /// As for [`open`](LogReader::open).
@@ -100,24 +102,24 @@ impl<R: Read> LogReader<R> {
         })
     }
 
-    /// What the log is about.
+    /// The description of the log.
     #[must_use]
     pub fn description(&self) -> &Description {
         &self.description
     }
 
-    /// How the log ends; known when its last message was read.
+    /// How the log ends. Known when its last message was read.
     #[must_use]
     pub fn ending(&self) -> Option<Ending> {
         self.ending
     }
 
-    /// The name for errors.
+    /// The name in errors.
     pub(crate) fn file(&self) -> &str {
         &self.file
     }
 
-    /// The next message that is whole, and `None` at the end.
+    /// The next undamaged message. `None` at the end.
     fn next_whole(&mut self) -> Result<Option<Message>, LogError> {
         while self.ending.is_none() {
             let found = self.scanner.next().map_err(|source| LogError::Read {
@@ -163,7 +165,7 @@ impl<R: Read> LogReader<R> {
         Ok(None)
     }
 
-    /// Compares what was read with what the file says of itself.
+    /// Compares what was read with the totals that the file states.
     fn end(&mut self) {
         if let Some(statistics) = self.scanner.statistics() {
             let to_ns = statistics.last_ns.saturating_sub(self.description.start_unix_ns);
@@ -195,7 +197,7 @@ impl<R: Read> LogReader<R> {
             .map_or(from_ns, |message| message.bench_ns.max(from_ns));
         let is_damaged = std::mem::take(&mut self.is_damaged);
         self.was_damaged |= is_damaged;
-        // At the end the summary may have told better.
+        // At the end, gaps from the summary may already describe the loss more precisely.
         if is_damaged && self.held.is_empty() {
             self.hold(Event::Gap {
                 stream: None,
@@ -216,7 +218,7 @@ impl<R: Read> LogReader<R> {
 impl<R: Read> Iterator for LogReader<R> {
     type Item = Result<Message, LogError>;
 
-    /// The next message. After an error there is none.
+    /// The next message. Nothing follows an error.
     fn next(&mut self) -> Option<Self::Item> {
         let next = self.next_or_gap();
         if next.is_err() {
@@ -226,7 +228,7 @@ impl<R: Read> Iterator for LogReader<R> {
     }
 }
 
-/// A message that is what its channel holds and what the description promises.
+/// A message, if it matches its channel and the description.
 fn message(stream: Stream, unix_ns: u64, data: &[u8], description: &Description) -> Option<Message> {
     let bench_ns = unix_ns.checked_sub(description.start_unix_ns)?;
     let body = decode(stream, data)?;

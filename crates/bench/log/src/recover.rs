@@ -1,28 +1,31 @@
-//! A whole file of one that was cut.
+//! Completes a log that was cut.
 
 use std::path::{Path, PathBuf};
 
 use crate::sink::LogFile;
 use crate::{Body, Ending, Event, LogError, LogReader, LogWriter, Message};
 
-/// What was recovered.
+/// Result of a recovery.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recovered {
-    /// The whole file.
+    /// The complete file.
     pub path: PathBuf,
-    /// Messages in it that the old file has.
+    /// Messages of the old file that it contains.
     pub messages: u64,
     /// How the old file ends.
     pub ending: Ending,
 }
 
-/// Writes all that can be read of a log into a whole one beside it, through a temporary name; the old file stays.
+/// Writes everything that can be read of a log into a complete file beside it, through a temporary
+/// name. The old file is kept.
 ///
-/// The whole one of `<name>.partial` is `<name>`, that of any other file `<stem>.recovered.mcap`. What was damaged on the disk
-/// becomes a gap, and so does the end of a file that was cut.
+/// The complete file of `<name>.partial` is `<name>`, that of any other file is
+/// `<stem>.recovered.mcap`. What was damaged on the disk becomes a gap, and so does the end of a
+/// file that was cut.
 ///
 /// # Errors
-/// A file that cannot be read or is no log; a whole one that exists already or cannot be written.
+/// A file that cannot be read or is no log; a complete file that exists already or cannot be
+/// written.
 pub fn recover(path: &Path) -> Result<Recovered, LogError> {
     let mut reader = LogReader::open(path)?;
     let is_partial = path.extension().is_some_and(|extension| extension == "partial");

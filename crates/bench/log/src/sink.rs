@@ -1,4 +1,4 @@
-//! Where a log goes.
+//! Targets to which a log is written.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -6,25 +6,25 @@ use std::path::{Path, PathBuf};
 
 use crate::LogError;
 
-/// Something that a log can be written to.
+/// A target of a log.
 pub trait Sink: Write {
-    /// Waits until what was written survives a loss of power.
+    /// Waits until what was written survives a power cut.
     ///
     /// # Errors
     /// What the operating system says.
     fn sync(&mut self) -> io::Result<()>;
 
-    /// The log is whole: it can take its place.
+    /// The log is complete: a file gets its final name.
     ///
     /// # Errors
     /// What the operating system says.
     fn complete(&mut self) -> io::Result<()>;
 
-    /// How to name it in errors.
+    /// Its name in errors.
     fn name(&self) -> String;
 }
 
-/// Memory: nothing to wait for.
+/// Memory needs no waiting.
 impl Sink for Vec<u8> {
     fn sync(&mut self) -> io::Result<()> {
         Ok(())
@@ -39,21 +39,24 @@ impl Sink for Vec<u8> {
     }
 }
 
-/// A file that has its name only when it is whole: until then the name ends in `.partial`.
+/// A file that gets its final name only when it is complete. Until then its name ends in
+/// `.partial`.
 #[derive(Debug)]
 pub struct LogFile {
     file: File,
     path: PathBuf,
     partial: PathBuf,
-    /// Whether it can be made again: then only the whole needs to survive a loss of power, and half of it is worth nothing.
+    /// Whether it can be made again from another file. Then only the complete file must survive a
+    /// power cut, and an incomplete one is worthless.
     is_remade: bool,
 }
 
 impl LogFile {
-    /// A new file, `<path>.partial` for now.
+    /// A new file, with the temporary name `<path>.partial`.
     ///
     /// # Errors
-    /// One of the two names is taken ([`recover`](crate::recover) finishes what is partial), or the file cannot be created.
+    /// One of the two names is in use ([`recover`](crate::recover) completes a partial file), or
+    /// the file cannot be created.
     pub fn create(path: &Path) -> Result<Self, LogError> {
         let partial = with_suffix(path, ".partial");
         for taken in [path, &partial] {
@@ -77,7 +80,8 @@ impl LogFile {
         })
     }
 
-    /// A file made from another one, which can be made again: `<path>.recovering` for now.
+    /// A file that is made from another file and can be made again, with the temporary name
+    /// `<path>.recovering`.
     pub(crate) fn remake(path: &Path) -> Result<Self, LogError> {
         if path.exists() {
             let file = path.display().to_string();
@@ -123,11 +127,11 @@ impl Sink for LogFile {
     }
 }
 
-/// What stayed partial is kept, unless it can be made again.
+/// A partial file is kept, unless it can be made again.
 impl Drop for LogFile {
     fn drop(&mut self) {
         if self.is_remade {
-            let _ = std::fs::remove_file(&self.partial); // has its own name if it is whole
+            let _ = std::fs::remove_file(&self.partial); // a complete file has its final name already
         }
     }
 }
@@ -138,7 +142,7 @@ fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Lets a file's name survive a loss of power, where folders can be synced at all.
+/// Makes a file's name survive a power cut, where folders can be synced.
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Ok(folder) = File::open(folder.unwrap_or(Path::new("."))) {

@@ -1,4 +1,4 @@
-//! The tactile frames of a log as a table, and a log as a bag of standard messages.
+//! Export of a log: its tactile frames as a table, and all of it as a bag of standard messages.
 
 use std::path::Path;
 
@@ -6,20 +6,21 @@ use twintac_recording::{FrameTable, TaxelCell};
 
 use crate::{Body, Ending, Event, LogError, LogFile, LogReader, LogWriter, Stream, TaxelReading, TopicNames};
 
-/// What was exported.
+/// Result of an export.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exported {
     /// Frames in the table or the bag.
     pub frames: u64,
-    /// Gaps in them: that the log marks, or that damage has left.
+    /// Gaps in them: those that the log marks, and those from damage.
     pub gaps: u64,
-    /// Time of the last frame on the bench's clock, s; 0 without frames.
+    /// Time of the last frame on the bench clock, s; 0 without frames.
     pub last_s: f64,
     /// How the log ends.
     pub ending: Ending,
 }
 
-/// Writes the tactile frames of a log, whole or cut, as a Parquet table, one row per frame, in little memory.
+/// Writes the tactile frames of a log, complete or cut, as a Parquet table with one row per frame.
+/// It needs little memory.
 ///
 /// # Errors
 /// A log that cannot be read; a table that cannot be written.
@@ -44,18 +45,22 @@ pub fn export_frames(log: &Path, table: &Path) -> Result<Exported, LogError> {
     }
     Ok(Exported {
         frames: table.finish()?,
-        gaps: gaps + u64::from(is_gap), // one behind the last frame
+        gaps: gaps + u64::from(is_gap), // a gap after the last frame
         last_s,
         ending: reader.ending().unwrap_or(Ending::Cut),
     })
 }
 
-/// Writes a log, whole or cut, as a bag of ROS 2 with standard messages alone (MCAP), in little memory: the pressures of all taxels, Pa
-/// (`std_msgs/msg/Float32MultiArray`), of each taxel pressure (`sensor_msgs/msg/FluidPressure`) and temperature (`sensor_msgs/msg/Temperature`), the wrench
-/// (`geometry_msgs/msg/WrenchStamped`, N and N m, no tare taken off), the robot's pose (`geometry_msgs/msg/PoseStamped`, m), and events (`std_msgs/msg/String`).
+/// Writes a log, complete or cut, as a ROS 2 bag with standard messages only (MCAP). It needs
+/// little memory. The bag has the pressures of all taxels, Pa (`std_msgs/msg/Float32MultiArray`);
+/// for each taxel pressure (`sensor_msgs/msg/FluidPressure`) and temperature
+/// (`sensor_msgs/msg/Temperature`); the wrench (`geometry_msgs/msg/WrenchStamped`, N and N m,
+/// without subtracting a tare); the robot's pose (`geometry_msgs/msg/PoseStamped`, m); and events
+/// (`std_msgs/msg/String`).
 ///
 /// # Errors
-/// A log that cannot be read; two topics of one name; a bag that is there already or cannot be written.
+/// A log that cannot be read; two topics with the same name; a bag that exists already or cannot be
+/// written.
 pub fn export_bag(log: &Path, bag: &Path, names: &TopicNames) -> Result<Exported, LogError> {
     let mut reader = LogReader::open(log)?;
     let mut writer = LogWriter::standard(LogFile::remake(bag)?, reader.description(), names)?;

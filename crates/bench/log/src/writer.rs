@@ -1,4 +1,4 @@
-//! Messages in, an MCAP file out.
+//! Writes messages to an MCAP file.
 
 use std::collections::BTreeMap;
 
@@ -8,16 +8,18 @@ use crate::mcap::{Chunk, MAGIC, Records, Summary, number, op};
 use crate::ros::{MESSAGE_ENCODING, SCHEMA_ENCODING, TopicNames, Topics};
 use crate::{Description, LogError, Message, Sink};
 
-/// Longest time of the bench that a message waits for being flushed, ns, while others follow it.
+/// Longest time, ns of the bench clock, that a message waits to be flushed while other messages
+/// follow it.
 pub(crate) const FLUSH_NS: u64 = 500_000_000;
-/// Size from which on a chunk is flushed.
+/// Size of a chunk from which on it is flushed, bytes.
 const CHUNK_BYTES: usize = 1 << 20;
-/// Name of the metadata that hold the description.
+/// Name of the metadata with the description.
 pub(crate) const DESCRIPTION: &str = "twintac";
-/// Name of the metadata that say where the numbers of an exported bag come from.
+/// Name of the metadata with the provenance of an exported bag.
 pub(crate) const EXPORTED: &str = "twintac_export";
 
-/// Writes a log. What was flushed stays readable whatever happens later, also without [`finish`](Self::finish).
+/// Writes a log. What was flushed stays readable in any case, also without
+/// [`finish`](Self::finish).
 ///
 /// The same description and messages give the same bytes.
 #[derive(Debug)]
@@ -29,7 +31,7 @@ pub struct LogWriter<S: Sink> {
     /// Number of the next message of each channel.
     sequences: Vec<u32>,
     summary: Summary,
-    /// Bytes and their checksum that are written.
+    /// Number of written bytes, and their checksum.
     written: u64,
     checksum: crc32fast::Hasher,
     /// Why nothing can be written any more.
@@ -38,17 +40,18 @@ pub struct LogWriter<S: Sink> {
 }
 
 impl<S: Sink> LogWriter<S> {
-    /// Begins a log and flushes what it is about.
+    /// Begins a log and flushes its description.
     ///
     /// # Errors
-    /// A description that contradicts itself; a sink that takes no more.
+    /// A description that is not consistent; a sink that fails.
     pub fn new(sink: S, description: &Description) -> Result<Self, LogError> {
         let metadata = description.to_map()?;
         let topics = Topics::new(&description.taxels);
         Self::begin(sink, description, topics, DESCRIPTION, &metadata)
     }
 
-    /// Begins a bag with standard messages alone, which is no log: what is needed to read it as one is left out.
+    /// Begins a bag with standard messages only. It is no log: it lacks what is needed to read it
+    /// as a log.
     pub(crate) fn standard(sink: S, description: &Description, names: &TopicNames) -> Result<Self, LogError> {
         names.check()?;
         let mut metadata = description.to_map()?;
@@ -91,12 +94,13 @@ impl<S: Sink> LogWriter<S> {
         Ok(writer)
     }
 
-    /// Adds a message, and flushes those before it when they are half a second older or many.
+    /// Adds a message. First flushes the earlier messages if the oldest is half a second older than
+    /// this one, or if they are many.
     ///
     /// # Errors
-    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that is no JSON, or a time beyond 64 bits; nothing
-    /// was added and the next message can be written. [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no
-    /// more, for good.
+    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that cannot be JSON,
+    /// or a time beyond 64 bits; nothing was added, and the next message can be written.
+    /// [`LogError::Write`] and then [`LogError::Stopped`]: the sink has failed permanently.
     pub fn write(&mut self, message: &Message) -> Result<(), LogError> {
         self.check_running()?;
         let unix_ns = self.accepts.check(message)?;
@@ -116,10 +120,10 @@ impl<S: Sink> LogWriter<S> {
         Ok(())
     }
 
-    /// Writes what waits and syncs it.
+    /// Writes and syncs the waiting messages.
     ///
     /// # Errors
-    /// [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no more, for good.
+    /// [`LogError::Write`] and then [`LogError::Stopped`]: the sink has failed permanently.
     pub fn flush(&mut self) -> Result<(), LogError> {
         self.check_running()?;
         if self.chunk.is_empty() {
@@ -130,7 +134,7 @@ impl<S: Sink> LogWriter<S> {
         self.append()
     }
 
-    /// Flushes, writes the index of the whole log, and lets it take its place.
+    /// Flushes, writes the index of the whole log, and gives a file its final name.
     ///
     /// # Errors
     /// As [`flush`](Self::flush).
@@ -150,7 +154,7 @@ impl<S: Sink> LogWriter<S> {
         self.latch(completed)
     }
 
-    /// Bytes that were written, without what waits.
+    /// Number of written bytes, without waiting messages.
     #[must_use]
     pub fn written_bytes(&self) -> u64 {
         self.written
@@ -163,7 +167,7 @@ impl<S: Sink> LogWriter<S> {
         }
     }
 
-    /// Writes and syncs what stands in `out`.
+    /// Writes and syncs the content of `out`.
     fn append(&mut self) -> Result<(), LogError> {
         let written = self
             .sink
@@ -186,13 +190,14 @@ impl<S: Sink> LogWriter<S> {
     }
 }
 
-/// Schemas and channels: at a file's start and in its summary.
+/// Schemas and channels. They are written at the start of a file and in its summary.
 fn declarations(topics: &Topics) -> [(u8, Records); 2] {
     let mut schemas = Records::default();
     for (place, definition) in topics.definitions.iter().enumerate() {
         schemas.schema(number(place), definition.name, SCHEMA_ENCODING, definition.text);
     }
-    // What players of ROS look for: no quality of service was offered, as nobody published.
+    // ROS players expect this entry. No quality of service was offered, because no publisher was
+    // involved.
     let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), String::new())]);
     let mut channels = Records::default();
     for (place, (topic, schema)) in topics.channels.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Bags of somebody else, read through an import description.
+//! Bags of other programs, read through an import description.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use twintac_log::read_bag;
 use twintac_recording::{Recording, guess_bag_import};
 
-/// What the bags of a bench mean: the arm's poses in m, its wrench in N, two taxels in Pa.
+/// The meaning of the bags: poses of the arm in m, its wrench in N, two taxels in Pa.
 const BENCH: &str = r#"
 sensor = "pair"
 provenance = "real"
@@ -27,7 +27,8 @@ presses = { split = "return-to-rest", rest_mm = 14.0, tolerance_mm = 0.05 }
 zero = { above_contact_mm = 1.0, window_s = 0.5 }
 "#;
 
-/// Depth of the tip over time: up to 2 mm, at 4 mm/s, twice, with rests between at 4 mm over the gel.
+/// Depth of the tip over time: twice to 2 mm at 4 mm/s, with rests at 4 mm above the gel between
+/// them.
 fn depth_mm(after_ns: u64) -> f64 {
     let s = (after_ns as f64 * 1e-9) % 4.0;
     (4.0 * (s - 0.5)).min(4.0 * (3.5 - s)).clamp(0.0, 6.0) - 4.0
@@ -38,7 +39,7 @@ fn pose(after_ns: u64) -> Cdr {
     Cdr::default().header(START_NS + after_ns).f64s(&numbers)
 }
 
-/// 3 N for each mm.
+/// 3 N per mm.
 fn wrench(after_ns: u64) -> Cdr {
     let force_n = 3.0 * depth_mm(after_ns).max(0.0);
     Cdr::default()
@@ -46,7 +47,7 @@ fn wrench(after_ns: u64) -> Cdr {
         .f64s(&[0.1, 0.2, -force_n, 0.0, 0.0, 0.0])
 }
 
-/// 5 kPa for each mm on the first taxel, a tenth of it on the second.
+/// 5 kPa per mm on the first taxel, a tenth of it on the second.
 fn tactile(after_ns: u64) -> Cdr {
     let pa = 5000.0 * depth_mm(after_ns).max(0.0);
     let numbers = [101_325.0 + pa, 100_000.0 + 0.1 * pa].map(|pa| pa as f32);
@@ -55,12 +56,13 @@ fn tactile(after_ns: u64) -> Cdr {
 
 const SECONDS: u64 = 8;
 
-/// Times of a rate, ns after the start.
+/// Times at a rate, ns after the start.
 fn times(hz: u64, first_ns: u64) -> impl Iterator<Item = u64> {
     (0..SECONDS * hz).map(move |step| step * 1_000_000_000 / hz + first_ns)
 }
 
-/// A bag of two presses: taxels at 100 Hz, poses at 125 Hz, wrenches at 500 Hz, and a topic of another kind.
+/// A bag of two presses: taxels at 100 Hz, poses at 125 Hz, wrenches at 500 Hz, and a topic of
+/// another kind.
 fn bench(compression: Option<Compression>) -> Made {
     bench_with(compression, tactile, wrench)
 }
@@ -99,7 +101,7 @@ fn near(one: f64, other: f64, within: f64) {
     assert!((one - other).abs() <= within, "{one} is not {other}");
 }
 
-/// Every frame is what was pressed then.
+/// Checks that every frame has the values of the press at its time.
 fn is_as_pressed(recording: &Recording) {
     assert_eq!(recording.taxels, ["t0", "t1"]);
     assert_eq!(recording.presses.len(), 2);
@@ -110,7 +112,7 @@ fn is_as_pressed(recording: &Recording) {
             // Times count from the first tactile message.
             let after_ns = (1e9 * press.time_s[frame]).round() as u64 + 5 * MS;
             let depth_mm = depth_mm(after_ns);
-            // Between two poses the motion turns around.
+            // Between two poses the motion turns.
             near(8.5 - pose.position_mm.z, depth_mm, 0.02);
             near(pose.position_mm.x, 0.0, 1e-9);
             near(force_n[frame], 3.0 * depth_mm.max(0.0), 0.01);
@@ -135,7 +137,7 @@ fn presses_come_back_from_topics_of_three_rates() {
     let found = &summary.files[0];
     assert_eq!((found.rows_read, found.presses), (800, 2));
     assert_eq!(found.unread_columns, ["/camera"]);
-    // The last pose comes 8 ms before the end, the last frame 5.
+    // The last pose comes 8 ms before the end, the last frame 5 ms before it.
     assert_eq!(found.warnings.len(), 1, "{found}");
     has(
         &found.warnings[0],
@@ -185,7 +187,7 @@ fn a_bag_that_was_cut_or_damaged_is_read_as_far_as_it_is_whole() {
         let found = &summary.files[0];
         has(
             &found.to_string(),
-            &["cut.mcap: 1 presses", "was cut; it is read up to there"],
+            &["cut.mcap: 1 presses", "is truncated; it is read up to that point"],
         );
         let mut damaged = whole.clone();
         damaged[middle_of_chunk(&whole, 20)] ^= 0x55;
@@ -203,7 +205,7 @@ fn a_topic_that_is_not_there_lists_those_that_are() {
     has(
         &problem,
         &[
-            "bag.mcap: column `/touch:data.0` is of no topic",
+            "bag.mcap: column `/touch:data.0` is of an unknown topic",
             "/tactile (std_msgs/msg/Float32MultiArray, 800 messages)",
             "/arm/pose (geometry_msgs/msg/PoseStamped, 1000 messages)",
             "/camera (foxglove.Image, 3 messages, cannot be read: its messages are `json`",
@@ -212,7 +214,7 @@ fn a_topic_that_is_not_there_lists_those_that_are() {
     let problem = file.problem(&BENCH.replace("\"/ft:force.z\"", "\"fz\""));
     has(
         &problem,
-        &["`fz` is none of a bag, whose columns are `/topic:field`", "/ft ("],
+        &["`fz` is not a column of a bag, which is `/topic:field`", "/ft ("],
     );
     let problem = file.problem(&BENCH.replace("/ft:force.z", "/camera:width"));
     has(
@@ -245,7 +247,7 @@ fn a_field_that_is_not_there_lists_those_that_are() {
         );
     }
     let problem = file.problem(&BENCH.replace("gel_top", "time = { column = \"/tactile:stamp\" }\ngel_top"));
-    has(&problem, &["`/tactile:stamp`", "have no header; take `log_time`"]);
+    has(&problem, &["`/tactile:stamp`", "have no header; use `log_time`"]);
 }
 
 #[test]
@@ -269,7 +271,7 @@ fn recordings_in_other_containers_say_what_to_do() {
 
 #[test]
 fn times_that_fall_are_refused_with_the_message_and_what_to_do() {
-    // The wrench's clock is set back by 2 s for one message.
+    // The clock of the wrench is set back by 2 s for one message.
     let set_back = |after_ns: u64| match after_ns {
         4_000_000_000 => Cdr::default()
             .header(START_NS + after_ns - 2_000_000_000)
@@ -286,7 +288,7 @@ fn times_that_fall_are_refused_with_the_message_and_what_to_do() {
             "/tactile:log_time",
         ],
     );
-    // The recorder's own clock is not.
+    // The recorder's own clock is not set back.
     let by_log = BENCH.replace("gel_top", "time = { column = \"/tactile:log_time\" }\ngel_top");
     assert_eq!(file.import(&by_log).unwrap().0.presses.len(), 2);
 
@@ -304,7 +306,7 @@ fn times_that_fall_are_refused_with_the_message_and_what_to_do() {
 
 #[test]
 fn clocks_that_differ_are_an_error_unless_the_recorder_is_asked() {
-    // Stamps count from when the sensor was switched on.
+    // Stamps count from power-up of the sensor.
     let uptime = |after_ns: u64| {
         let force_n = 3.0 * depth_mm(after_ns).max(0.0);
         Cdr::default()
@@ -322,7 +324,7 @@ fn clocks_that_differ_are_an_error_unless_the_recorder_is_asked() {
     let by_log = BENCH.replace("gel_top", "time = { column = \"/tactile:log_time\" }\ngel_top");
     let (recording, _) = file.import(&by_log).unwrap();
     near(recording.presses[0].time_s[0], START_NS as f64 * 1e-9, 1.0);
-    // Drivers that leave their headers empty say no time at all.
+    // Drivers that leave their headers empty give no time.
     let unstamped = |after_ns: u64| {
         let force_n = 3.0 * depth_mm(after_ns).max(0.0);
         Cdr::default()
@@ -352,7 +354,7 @@ fn what_is_missing_in_a_message_is_a_missing_reading() {
         .unwrap();
     assert!(press.taxels_raw[frame][0].is_nan() && press.taxels_raw[frame + 1][1].is_nan());
     assert_eq!(press.valid[frame..frame + 2], [[false, true], [true, false]]);
-    // What is no reading must be there.
+    // A column that is no reading of a taxel must have a number in every row.
     let no_force = |after_ns: u64| match after_ns {
         2_004_000_000 => Cdr::default().header(START_NS + after_ns).f64s(&[f64::NAN; 6]),
         _ => wrench(after_ns),
@@ -381,11 +383,12 @@ fn messages_that_are_not_of_their_type_are_left_out_and_said() {
     assert_eq!(recording.presses.len(), 2);
     has(
         &summary.files[0].to_string(),
-        &["1 of 800 messages of /tactile are not what their type"],
+        &["1 of 800 messages of /tactile do not match their type"],
     );
 }
 
-/// A barometer a topic, each at its own time: readings are put onto the first one's.
+/// Each barometer has its own topic and its own times: readings are interpolated to the times of
+/// the first one.
 #[test]
 fn each_taxel_may_have_a_topic_of_its_own() {
     let mut made = Made::new(Some(Compression::Zstd));
@@ -411,7 +414,7 @@ fn each_taxel_may_have_a_topic_of_its_own() {
             scalar(at, 101_325.0 + 5000.0 * depth_mm(at).max(0.0)),
         );
         let later = at + 3 * MS;
-        // A second is lost, within a press.
+        // One second is lost, within a press.
         if !(1_500 * MS..2_500 * MS).contains(&at) {
             made.add(
                 "/baro1",
@@ -431,7 +434,7 @@ fn each_taxel_may_have_a_topic_of_its_own() {
     let (recording, summary) = made.file().import(&description).unwrap();
     let found = &summary.files[0];
     assert_eq!(found.rows_read, 800);
-    // Before the first message of it, and while it was lost.
+    // Missing before the first message of the topic, and during the loss.
     assert_eq!(found.missing_readings, 1 + 100 + 1, "{found}");
     has(
         &found.to_string(),
@@ -443,7 +446,7 @@ fn each_taxel_may_have_a_topic_of_its_own() {
             let kpa = &press.taxels_kpa[frame];
             near(kpa[0], 5.0 * depth_mm.max(0.0), 1e-6);
             if press.valid[frame][1] {
-                near(kpa[1], 0.5 * depth_mm.max(0.0), 0.011); // where the motion turns around
+                near(kpa[1], 0.5 * depth_mm.max(0.0), 0.011); // the motion turns
                 near(press.temperature_c.as_ref().unwrap()[frame][1], 25.5, 1e-12);
             }
         }
@@ -614,7 +617,7 @@ fn a_turning_quaternion_may_change_its_sign() {
     let (recording, _) = made.file().import(&description).unwrap();
     for press in &recording.presses {
         for (time_s, pose) in press.time_s.iter().zip(&press.gel_from_indenter) {
-            // Rows are half-way between two poses.
+            // Rows lie half-way between two poses.
             let expected_rad = 0.01 * (100.0 * time_s + 0.5);
             let expected = DQuat::from_rotation_z(expected_rad) * DVec3::X;
             assert!(
@@ -708,13 +711,13 @@ time = { column = "/arm/pose:stamp" }
     assert_eq!(recording.presses.len(), 2);
     for press in &recording.presses {
         for (pose, kpa) in press.gel_from_indenter.iter().zip(&press.taxels_kpa) {
-            // The nearest pose is 4 ms away at most, which are 0.016 mm.
+            // The nearest pose is at most 4 ms away, which is 0.016 mm.
             near(kpa[0], 5.0 * (8.5 - pose.position_mm.z).max(0.0), 0.081);
         }
     }
 }
 
-/// A small bag whose checksums say nothing, so that damage gets as far as it can.
+/// A small bag whose checksums are switched off, so that damage reaches as far as possible.
 fn unchecked(compression: Option<Compression>) -> Vec<u8> {
     let options = WriteOptions::new()
         .compression(compression)
@@ -762,7 +765,7 @@ proptest! {
                 prop_assert!(topic.columns.values().all(|column| column.len() == n_rows));
             }
         }
-        // Whatever comes of it, it comes to an end.
+        // Any result is accepted, but the call must end.
         let _ = file.import(&BENCH.replace("force =", "# force ="));
     }
 }

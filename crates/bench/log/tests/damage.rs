@@ -1,4 +1,4 @@
-//! Logs that were cut or damaged, sinks that fail, and bytes that are no log at all.
+//! Logs that were cut or damaged, sinks that fail, and bytes that are no log.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -10,7 +10,7 @@ use common::{NS_PER_S, bench, description, log, reader};
 use proptest::prelude::*;
 use twintac_log::{Body, Ending, Event, LogError, LogReader, LogWriter, Message, Sink, presses};
 
-/// Notes after each message how many bytes are written, as they would be on a disk.
+/// Notes after each message how many bytes have been written, as on a disk.
 fn log_with_progress(messages: &[Message]) -> (Vec<u8>, Vec<u64>) {
     let mut writer = LogWriter::new(Vec::new(), &description(2)).unwrap();
     let mut progress = Vec::new();
@@ -43,7 +43,7 @@ fn a_log_cut_at_any_byte_has_all_that_was_flushed() {
             Ending::Cut
         };
         assert_eq!(reader.ending(), Some(ending), "cut at {end}");
-        // The latest message that had been handed over when the cut-off byte was written.
+        // The latest message that had been handed over when the byte at the cut was written.
         let handed = progress.partition_point(|written| *written <= end as u64);
         let Some(now_ns) = handed.checked_sub(1).map(|last| messages[last].bench_ns) else {
             continue;
@@ -76,7 +76,7 @@ fn every_message_is_flushed_within_a_second_of_the_bench() {
 fn a_damaged_byte_costs_one_chunk_and_leaves_a_gap() {
     let messages = bench(4, 2, [10, 20, 5]);
     let bytes = log(&description(2), &messages);
-    // A force among a chunk's messages: any other number would be as good, but for the checksum.
+    // A force among a chunk's messages. Without the checksum any other number would be valid too.
     let time_ns = 2 * NS_PER_S + NS_PER_S / 2 + 1;
     let force_n = (-(time_ns as f64 * 1e-9)).to_le_bytes();
     let place = bytes.windows(8).position(|window| window == force_n).unwrap();
@@ -108,7 +108,7 @@ fn a_damaged_byte_costs_one_chunk_and_leaves_a_gap() {
     assert_eq!(others, kept);
 }
 
-/// A disk that takes so many bytes and no more.
+/// A disk with room for a limited number of bytes.
 #[derive(Default)]
 struct Full {
     bytes: Vec<u8>,
@@ -150,7 +150,7 @@ fn fill(disk: &mut Full, messages: &[Message]) -> Result<(), LogError> {
     for message in messages {
         if let Err(error) = writer.write(message) {
             assert!(matches!(error, LogError::Write { .. }), "{error}");
-            // It stays refused.
+            // Further messages are refused too.
             for _ in 0..2 {
                 let again = writer.write(message).unwrap_err();
                 assert!(matches!(again, LogError::Stopped { .. }), "{again}");
@@ -182,7 +182,7 @@ fn a_disk_that_is_full_at_any_byte_is_an_error_and_keeps_what_it_has() {
     fill(&mut disk, &messages).unwrap();
 }
 
-/// Reads all there is, in every way; whatever comes back keeps its promises.
+/// Reads everything in every way. Whatever is returned must be valid.
 fn read(bytes: &[u8]) {
     let Ok(reader) = LogReader::new(bytes, "any") else {
         return;
@@ -205,7 +205,7 @@ proptest! {
         read(&[b"\x89MCAP0\r\n", &bytes[..]].concat());
     }
 
-    /// Bytes behind a true description, such that records have true kinds and small lengths.
+    /// Bytes after a valid description, with records of valid kinds and small lengths.
     #[test]
     fn no_records_make_the_reader_panic(
         records in prop::collection::vec((0_u8..17, 0_u64..60, prop::collection::vec(any::<u8>(), 0..60)), 0..30),
@@ -238,7 +238,7 @@ proptest! {
     }
 }
 
-/// Lets altered chunks be read: a checksum of 0 stands for none.
+/// Switches checksums off, so that altered chunks are read: a checksum of 0 means none.
 fn strip_checksums(bytes: &mut [u8]) {
     let mut at = 8;
     while at + 9 < bytes.len() {
@@ -267,7 +267,7 @@ fn zeros_that_a_file_system_leaves_are_an_end() {
     );
 }
 
-/// Bytes, and the largest buffer that was offered for them.
+/// Bytes, and the size of the largest buffer that was offered for them.
 struct Watched<'a> {
     bytes: &'a [u8],
     largest: &'a mut usize,
@@ -304,7 +304,8 @@ fn lengths_that_are_lies_cost_no_memory() {
     }
 }
 
-/// Messages that a damaged log may lose: those in a gap that is marked, or behind the end of a log that says it was cut.
+/// Whether a loss is reported: the message lies in a marked gap, or after the end of a log that
+/// says it was cut.
 fn is_said(lost: &Message, back: &[Message], ending: Ending) -> bool {
     let is_in_gap = |message: &Message| {
         let Body::Event(Event::Gap {
@@ -356,7 +357,7 @@ fn every_flipped_bit_is_said_and_what_it_loses_has_its_gap() {
             !messages.contains(message) && !matches!(message.body, Body::Event(Event::Gap { .. }))
         };
         assert_eq!(back.iter().find(strange), None, "bit {bit}");
-        // Presses cannot be read where all poses are gone, and that is said too.
+        // Presses cannot be read if all poses are lost. This is reported too.
         let read = presses(reader_of(&bytes), "flipped", &Default::default());
         assert!(
             read.is_err() || read.is_ok_and(|read| !read.remarks.is_empty()),
@@ -407,7 +408,7 @@ fn a_chunk_that_is_taken_for_something_else_leaves_a_gap() {
             );
         }
     }
-    // The table of frames counts the gap, also of the last chunk.
+    // The table of frames counts the gap, also the gap after the last chunk.
     let folder = tempfile::tempdir().unwrap();
     let (path, table) = (
         folder.path().join("damaged.mcap"),

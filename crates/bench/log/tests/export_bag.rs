@@ -1,4 +1,4 @@
-//! A log as a bag of standard messages, and back through an import description.
+//! Exports a log as a bag of standard messages, and reads it back through an import description.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -14,7 +14,8 @@ use common::{NS_PER_S, begun, description, ended, event, frame, log, pose, wrenc
 use glam::DVec3;
 use twintac_log::{Ending, LogReader, Message, ReadOptions, TopicNames, export_bag, read_bag, read_presses};
 
-/// What the bag of a log means: the poses are of the tool, 40 mm behind the tip, in the robot's frame.
+/// The meaning of the bag of a log: the poses are those of the tool, 40 mm behind the tip, in the
+/// robot's frame.
 const BENCH: &str = r#"
 sensor = "phystac"
 provenance = "emulated"
@@ -32,7 +33,7 @@ presses = { split = "return-to-rest", rest_mm = 97.0 }
 zero = { above_contact_mm = 1.0, window_s = 0.5 }
 "#;
 
-/// One press of 2 s between two seconds of rest, in which all streams come at the same times.
+/// One press of 2 s with a second of rest before and after it. All streams have the same times.
 fn messages() -> Vec<Message> {
     let mut messages = Vec::new();
     for step in 0..400_u64 {
@@ -63,7 +64,7 @@ fn names() -> TopicNames {
     names
 }
 
-/// A log and the bag that is made of it, in a folder.
+/// A log and the bag exported from it, in a folder.
 fn exported(folder: &Path) -> (PathBuf, PathBuf) {
     let (own, bag) = (folder.join("own.mcap"), folder.join("p.mcap"));
     std::fs::write(&own, log(&description(2), &messages())).unwrap();
@@ -109,7 +110,7 @@ fn an_exported_log_comes_back_through_an_import_with_the_same_numbers() {
             }
         }
         assert!(n_compared > 300, "{n_compared}");
-        // Every seventh frame has no pressure of the first taxel.
+        // Every seventh frame lacks the pressure of the first taxel.
         assert_eq!(summary.files[0].missing_readings, 58);
     }
 }
@@ -160,7 +161,7 @@ fn numbers_keep_where_they_come_from() {
         has(
             &problem,
             &[
-                "its numbers are emulated, as it says itself",
+                "the file says that its numbers are emulated",
                 "provenance = \"real\"",
             ],
         );

@@ -21,7 +21,8 @@ fn messages() -> Vec<Message> {
     bench(SECONDS, 8, [55, 200, 100])
 }
 
-/// Not a test of its own: the process that is killed. It says each message's time when it was handed over.
+/// Not a test: this is the process that is killed. It prints the time of each message after it was
+/// handed over.
 #[test]
 #[ignore = "started by the other test"]
 fn writes_until_it_is_killed() {
@@ -32,14 +33,14 @@ fn writes_until_it_is_killed() {
         writer.write(&message).unwrap();
         writeln!(progress, "{}", message.bench_ns).unwrap();
     }
-    // Waits to be killed, or for the other test's end: the log is not finished.
+    // Waits to be killed, or for the end of the other test. The log is not finished.
     let _ = std::io::stdin().read(&mut [0]);
 }
 
 #[test]
 fn a_killed_process_leaves_all_that_is_older_than_a_second() {
     let messages = messages();
-    // Disks take their time: ten processes a thread, each killed after the one before.
+    // Disks need time: each thread kills ten processes, one after the other.
     let furthest = std::thread::scope(|scope| {
         let kill_ten = |seed| {
             let mut chance = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
@@ -55,7 +56,7 @@ fn a_killed_process_leaves_all_that_is_older_than_a_second() {
     assert!(furthest.unwrap() > messages.len() / 2, "some lived long");
 }
 
-/// Kills a process when it says so late a time, and looks at what it leaves: how many messages that are.
+/// Kills a process when it prints a time, and checks its log. Returns the number of messages in it.
 fn killed_at(kill_ns: u64, messages: &[Message]) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bench.mcap");

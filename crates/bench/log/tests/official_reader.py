@@ -1,4 +1,6 @@
-"""Reads a log with the packages `mcap` and `mcap-ros2-support`, and prints what it finds as one line of JSON."""
+"""Reads a log with the packages `mcap` and `mcap-ros2-support`, and prints what it finds as one
+line of JSON.
+"""
 
 import json
 import sys
@@ -22,7 +24,7 @@ def plain(value):
         return {name: plain(getattr(value, name)) for name in value.__slots__ if name.islower()}
     if isinstance(value, (bytes, list, tuple)) or hasattr(value, "tolist"):
         return [plain(element) for element in value]
-    return None if value != value else value  # JSON has no word for what is not a number
+    return None if value != value else value  # JSON has no NaN
 
 
 json.dump(

@@ -1,4 +1,5 @@
-//! The format's official reader in Python, with its decoder of ROS 2 messages. `TWINTAC_PYTHON` names a Python that has both.
+//! The format's official reader in Python, with its decoder of ROS 2 messages. `TWINTAC_PYTHON`
+//! names a Python that has both packages.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // also in the helpers of tests
 
@@ -10,7 +11,7 @@ use common::{NS_PER_S, bench, description, log};
 use serde_json::{Value, json};
 use twintac_log::{Message, recover};
 
-/// What it finds in a file, or `None` where there is no such Python.
+/// What the reader finds in a file. `None` without such a Python.
 fn found(path: &std::path::Path) -> Option<Value> {
     let python = std::env::var_os("TWINTAC_PYTHON").unwrap_or_else(|| "python3".into());
     let has_packages = Command::new(&python)
@@ -59,7 +60,7 @@ fn the_official_reader_decodes_every_topic() {
     let last = |topic: &str| &found["last"][topic];
     let data = |topic: &str| &last(topic)["data"];
     let start_ns = description(2).start_unix_ns;
-    // The last frame is triggered 3 ns behind 1.98 s of the bench's clock.
+    // The last frame is triggered at 1.98 s and 3 ns of the bench clock.
     let pressure = last("/tactile/S1/pressure");
     let stamp_ns = start_ns + 1_980_000_003;
     assert_eq!(pressure["schema"], "sensor_msgs/msg/FluidPressure");

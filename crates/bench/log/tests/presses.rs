@@ -1,4 +1,4 @@
-//! A log's presses, as a recording.
+//! The presses of a log as a recording.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -19,7 +19,7 @@ fn read(messages: &[Message]) -> ReadBack {
     presses(reader(&bytes), "bench.mcap", &ReadOptions::default()).unwrap()
 }
 
-/// A frame at 10 ms each whose second taxel reads 1 kPa more.
+/// A frame whose second taxel reads 1 kPa more than the first.
 fn frame(time_ns: u64, pressure_pa: f64) -> Message {
     let mut taxels = vec![taxel(0); 2];
     for (taxel, more_pa) in taxels.iter_mut().zip([0.0, 1000.0]) {
@@ -36,13 +36,15 @@ fn frame(time_ns: u64, pressure_pa: f64) -> Message {
     }
 }
 
-/// Height of the tip, mm, force, N, and pressure, Pa, over the time: linear, so that interpolation is exact.
+/// Height of the tip, mm, force, N, and pressure, Pa, over time. They are linear, so that
+/// interpolation is exact.
 fn ramp(time_ns: u64) -> (f64, f64, f64) {
     let time_s = time_ns as f64 / NS_PER_S as f64;
     (7.0 - time_s, 3.0 * time_s, 101_000.0 + 500.0 * time_s)
 }
 
-/// Four seconds: frames at 100 Hz, wrenches and poses at 50 Hz and never at a frame's time; a press from 2 to 3 s.
+/// Four seconds: frames at 100 Hz, wrenches and poses at 50 Hz, never at the time of a frame; a
+/// press from 2 to 3 s.
 fn stream() -> Vec<Message> {
     let mut messages = Vec::new();
     for step in 0..400 {
@@ -140,7 +142,7 @@ fn nothing_is_interpolated_across_gaps() {
         let remark = format!("gap in {words} from 2.209 to 2.221 s, 3 messages: told");
         assert_eq!(back.remarks, [remark]);
     }
-    // What the sensor itself says to be lost.
+    // A loss that the sensor itself reports.
     let mut lossy = stream();
     for message in &mut lossy {
         if let Body::Wrench(reading) = &mut message.body
@@ -150,7 +152,7 @@ fn nothing_is_interpolated_across_gaps() {
         }
     }
     assert_eq!(invalid_ms(only(&read(&lossy))), [2230, 2240]);
-    // Silence that nobody explains: no pose from 2207 to 2287 ms.
+    // A silence without explanation: no pose from 2207 to 2287 ms.
     let mut silent = stream();
     silent.retain(|message| {
         message.stream() != Stream::Pose || !(2210 * MS..2280 * MS).contains(&message.bench_ns)
@@ -158,7 +160,7 @@ fn nothing_is_interpolated_across_gaps() {
     let back = read(&silent);
     let expected: Vec<u64> = (221..=228).map(|step| 10 * step).collect();
     assert_eq!(invalid_ms(only(&back)), expected);
-    // A reading that is no number is missing.
+    // A reading that is NaN counts as missing.
     let mut broken = stream();
     for message in &mut broken {
         if let Body::Wrench(reading) = &mut message.body
@@ -185,14 +187,14 @@ fn the_last_tare_is_taken_off_the_force() {
     let mut messages = stream_with(event(1500 * MS, tare(-100.0)));
     messages.push(event(1900 * MS, tare(-2.0)));
     let back = read(&messages);
-    // The wrench's z is -3 N a second, of which the tare's -2 N is no load.
+    // The wrench's z is -3 N per second of time. The tare's -2 N of it is zero load.
     let force_n = only(&back).force_n.as_ref().unwrap()[50];
     assert!((force_n - (3.0 * 2.5 - 2.0)).abs() < 1e-9, "{force_n}");
 }
 
 #[test]
 fn a_baseline_leaves_other_presses_out_and_faults_too() {
-    // A press that ended 200 ms before the one looked at, and left the taxels high.
+    // A press that ended 200 ms before the examined one and left a higher reading of the taxels.
     let mut messages = vec![event(1200 * MS, begun("a")), event(1790 * MS, ended("a"))];
     for message in stream() {
         let mut message = message;
@@ -245,7 +247,7 @@ fn faults_are_invalid_for_as_long_as_they_last() {
     assert_eq!(invalid_ms(press), [2500]);
     assert_eq!(
         back.remarks,
-        ["press `p`: taxel `S0` gave nothing in 1 of 101 frames"]
+        ["press `p`: taxel `S0` has no reading in 1 of 101 frames"]
     );
 }
 
@@ -269,8 +271,8 @@ fn a_log_that_was_cut_has_its_press_as_far_as_it_goes() {
     assert_eq!(
         back.remarks,
         [
-            "press `p` was not ended: it goes on to the log's end",
-            "the log was cut: it has what was flushed before"
+            "press `p` has no end: it lasts to the end of the log",
+            "the log is truncated: it has what was flushed before"
         ]
     );
 }
@@ -298,10 +300,10 @@ fn odd_events_are_remarked_upon() {
     assert_eq!(
         back.remarks,
         [
-            "press `ghost` ends, but did not begin",
-            "press `p` was not ended before `p` began",
-            "the bench stopped at 5.000 s: stopped by the operator",
-            "press `late` was not ended: it goes on to the log's end",
+            "press `ghost` ends without a beginning",
+            "press `p` did not end before `p` began",
+            "the test setup stopped at 5.000 s: stopped by the operator",
+            "press `late` has no end: it lasts to the end of the log",
             "press `late` has no tactile frames and is left out",
         ]
     );

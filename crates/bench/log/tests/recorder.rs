@@ -1,4 +1,4 @@
-//! The thread that writes: slow disks, full disks, and the end.
+//! The writing thread: slow disks, full disks, and the end.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -17,16 +17,17 @@ use twintac_log::{
 
 type Bytes = Arc<Mutex<Vec<u8>>>;
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
 
-/// A disk that the test looks at, and that waits for it before each sync when it is told to.
+/// A disk that the test observes, and that waits for the test before each sync if told to.
 struct Disk {
     bytes: Bytes,
     gate: Option<Gate>,
 }
 
-/// Where each sync is announced, and what it then waits for. Nobody waits when the test has let go of it.
+/// Announces each sync and then waits for the test. Does not wait any more when the test has
+/// dropped its end.
 struct Gate {
     announce: Sender<()>,
     open: Receiver<io::Result<()>>,
@@ -63,7 +64,8 @@ impl Sink for Disk {
     }
 }
 
-/// A recorder whose disk syncs once for the description, and then whenever the test says so. The test hears of each sync that begins.
+/// A recorder whose disk syncs once for the description, and then whenever the test allows it. The
+/// test is told of each sync that begins.
 struct Gated {
     recorder: Recorder,
     bytes: Bytes,
@@ -110,7 +112,7 @@ fn a_file_has_its_name_only_when_it_is_whole() {
     let sender = recorder.sender();
     for message in &sent {
         sender.send(message.clone()).unwrap();
-        // What cannot be written is the sender's error, and not the log's end.
+        // A message that cannot be written is an error of its sender, and does not end the log.
         let wrong = sender.send(common::frame(0, 3)).unwrap_err();
         assert!(matches!(wrong, LogError::Invalid { .. }), "{wrong}");
     }
@@ -138,12 +140,14 @@ fn a_disk_that_does_not_keep_up_is_said_aloud_and_marked() {
         syncs,
     } = gated(10);
     let sender = recorder.sender();
-    // The second message comes half a second of the bench after the first: the thread syncs, and waits for the disk.
+    // The second message is half a second of the bench clock later than the first: the thread
+    // syncs, and waits for the disk.
     sender.send(wrench(0, 1.0)).unwrap();
     sender.send(wrench(600_000_000, 1.0)).unwrap();
     syncs.recv().unwrap();
     while sender.queued() > 0 {
-        // On a busy machine the first message was flushed alone, because nothing followed it for so long.
+        // On a busy machine the first message was flushed alone, because no message followed it for
+        // long enough.
         open.send(Ok(())).unwrap();
         syncs.recv().unwrap();
     }
@@ -160,7 +164,7 @@ fn a_disk_that_does_not_keep_up_is_said_aloud_and_marked() {
         }
     }
     assert_eq!(lost.len(), 40);
-    // Events have room of their own.
+    // Events have additional room.
     sender.send(event(600_060_000, begun("p"))).unwrap();
     drop(open);
     let recorded = recorder.finish().unwrap();
@@ -323,7 +327,7 @@ fn recovering_makes_a_whole_file_and_keeps_the_old_one() {
     assert!(back.len() as u64 == recovered.messages && back.len() > sent.len() / 4);
     let cut = folder.path().join("bench.mcap.partial");
     assert!(matches!(recover(&cut).unwrap_err(), LogError::Exists { .. }));
-    // What is whole already gives the same bytes again, under another name.
+    // A log that is complete gives the same bytes again, under another name.
     let path = folder.path().join("old.mcap");
     std::fs::write(&path, &whole).unwrap();
     let again = recover(&path).unwrap();

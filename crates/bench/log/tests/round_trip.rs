@@ -1,4 +1,4 @@
-//! What was written is what is read: by this crate, and by the format's own library.
+//! Messages are read as they were written, by this crate and by the format's own library.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -14,7 +14,7 @@ use twintac_log::{Ending, Event, LogError, LogReader, LogWriter, Stream};
 fn messages_come_back_bit_for_bit_in_their_order() {
     let description = description(8);
     let mut messages = bench(3, 8, [100, 500, 50]);
-    messages.swap(40, 90); // streams come from threads of their own
+    messages.swap(40, 90); // each stream comes from its own thread
     messages.push(event(
         5,
         Event::Gap {
@@ -75,7 +75,7 @@ fn the_formats_own_library_finds_the_same() {
     assert_eq!(statistics.metadata_count, 1);
     assert_eq!(statistics.chunk_count as usize, summary.chunk_indexes.len());
     for index in &summary.chunk_indexes {
-        // Half a second is what a chunk holds.
+        // A chunk holds at most half a second.
         assert!(index.message_end_time - index.message_start_time < common::NS_PER_S / 2);
         let found = summary.read_message_indexes(&bytes, index).unwrap();
         for (channel, entries) in found {
@@ -112,7 +112,8 @@ fn every_checksum_holds_by_the_formats_own_library() {
                 reader.notify_read(given);
                 rest = &rest[given..];
             }
-            // The footer's and that of the data are last in their records; 0 would stand for none.
+            // The checksums of the footer and of the data are last in their records. A checksum of
+            // 0 would mean none.
             mcap::sans_io::LinearReadEvent::Record { data, opcode } => {
                 if [mcap::records::op::DATA_END, mcap::records::op::FOOTER].contains(&opcode) {
                     checksums.push(data[data.len() - 4..].to_vec());
@@ -123,7 +124,8 @@ fn every_checksum_holds_by_the_formats_own_library() {
     assert!(rest.is_empty());
     assert_eq!(checksums.len(), 2);
     assert!(!checksums.contains(&vec![0; 4]));
-    // The summary's checksum runs from its first record to where it stands itself, in the footer, before the last magic.
+    // The summary's checksum covers the bytes from its first record to the checksum itself, which
+    // is in the footer, before the final magic.
     let end = bytes.len() - 8 - 4;
     let start = u64::from_le_bytes(bytes[end - 16..end - 8].try_into().unwrap()) as usize;
     assert_eq!(

@@ -1,7 +1,9 @@
-//! An emulated board at the end of a pseudo-terminal: `cargo run --release -p twintac-microcontroller --example board -- [CHIP] [faults]`.
+//! An emulated board at the end of a pseudo-terminal:
+//! `cargo run --release -p twintac-microcontroller --example board -- [CHIP] [faults]`.
 //!
-//! It says which port it is, and runs until it is ended by Ctrl-C. A ball taps on the sensor once in four seconds. With `faults`, a chip goes away
-//! for 3 s every 20 s, and the bus hangs in between until it is freed.
+//! It prints the name of its port, and runs until Ctrl-C. A ball taps on the sensor once in four
+//! seconds. With `faults`, a chip fails for 3 s every 20 s, and between these failures the bus
+//! hangs until it is freed.
 
 #![allow(clippy::print_stdout)] // says where it is
 
@@ -15,7 +17,7 @@ use twintac_emulate::{FaultKind, Hertz, LabClock, Moment, Physics, ScheduledFaul
 use twintac_microcontroller::{Microcontroller, Setup};
 use twintac_rig::TcpPose;
 
-/// A ball that goes up and down by itself.
+/// A ball that moves up and down by itself.
 struct Taps(Hertz);
 
 impl Physics for Taps {
@@ -26,7 +28,7 @@ impl Physics for Taps {
     }
 }
 
-/// What goes wrong in ten minutes.
+/// The faults of ten minutes.
 fn faults() -> Vec<ScheduledFault> {
     let every_20_s = (0..30).map(|turn| 20.0 * f64::from(turn));
     let both = every_20_s.flat_map(|from_s| {
@@ -57,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut board = Microcontroller::new(LabClock::real(), Taps(Hertz::default()), &setup)?;
     let (mut port, mut computer) = TTYPort::pair()?;
-    computer.set_exclusive(false)?; // another program opens it
+    computer.set_exclusive(false)?; // so that another program can open it
     port.set_timeout(Duration::from_millis(1))?;
     let path = computer.name().ok_or("the pseudo-terminal has no name")?;
     println!("an emulated board with eight {chip} is at {path}: in another terminal");
@@ -71,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (_, bytes) = board.round();
         match port.write_all(&bytes) {
             Err(error) if error.kind() != ErrorKind::TimedOut => return Err(error.into()),
-            _ => {} // nobody listens, and what does not fit is lost: numbers of frames tell
+            _ => {} // if nobody reads, what does not fit is lost; frame numbers show it
         }
     }
 }

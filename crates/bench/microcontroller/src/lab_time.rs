@@ -1,9 +1,9 @@
-//! The lab's clock as a board's.
+//! The emulator's clock as the clock of a board.
 
 use phystac::Clock;
 use twintac_emulate::LabClock;
 
-/// The lab's clock: the board was switched on at its zero.
+/// The emulator's clock. The board was switched on at its zero.
 #[derive(Clone, Debug)]
 pub(crate) struct LabTime(pub(crate) LabClock);
 

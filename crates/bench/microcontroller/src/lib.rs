@@ -1,7 +1,11 @@
-//! A microcontroller, emulated: the firmware that boards run, on the emulated bus, in real or in virtual time.
+//! An emulated microcontroller: the firmware of real boards, run on an emulated I²C bus, in real or
+//! in virtual time.
 //!
-//! What is emulated is the bus with all that is on it (`twintac-emulate`), with faults on demand. What runs is `twintac-firmware`, as on a
-//! board: a [`Microcontroller`] takes the bytes that a host sends, and gives those that a board would.
+//! The bus with all chips on it is emulated (`twintac-emulate`), with faults on demand. The
+//! firmware is `twintac-firmware`, the same code as on a board. A [`Microcontroller`] takes the
+//! bytes that a host sends ([`Microcontroller::hear`]), and returns the bytes that a board would
+//! send, together with the readings of its taxels in Pa ([`Microcontroller::round`]). [`Setup`]
+//! describes the board, its faults and the options with which the firmware is built.
 //!
 //! ```
 //! use phystac::Chip;
@@ -15,6 +19,17 @@
 //! assert!(String::from_utf8_lossy(&bytes).contains("# rate 50\r\n0,"));
 //! # Ok::<(), twintac_microcontroller::SetupError>(())
 //! ```
+//!
+//! # How it works
+//!
+//! The emulated clock (`LabClock`) is the board's clock: the board was switched on at its zero.
+//! Each call of [`Microcontroller::round`] waits until the next round is due, reads all chips and
+//! encodes the result as the firmware does: as text lines or packets. The tool in front of the
+//! sensor rests at [`Setup::tool_mm`], and a `Physics` of the caller gives the pressures there; a
+//! physics may move its indenter by itself over time. If the bus hangs, the firmware frees it with
+//! clocks, and with the switch's RESET line if that is wired.
+//!
+//! The crate depends on no solver, no twin, no emulated gel and no recording.
 
 mod lab_time;
 mod microcontroller;

@@ -16,18 +16,18 @@ use crate::setup::{N_TAXELS, Setup, SetupError};
 
 type Rescue = Box<dyn FnMut(&mut AtOnce<Bus>) -> Result<(), RecoveryError> + Send>;
 
-/// A board that runs the firmware, without its port: who has it takes bytes to it and from it.
+/// A board that runs the firmware, without its port: the owner carries bytes to it and from it.
 pub struct Microcontroller {
     firmware: Firmware<AtOnce<Bus>, AtOnce<LabClock>, LabTime, Rescue, N_TAXELS>,
     clock: LabClock,
 }
 
 impl Microcontroller {
-    /// A board that is switched on at the clock's zero. `physics` says what its chips feel; the tool that it is told of rests at
-    /// [`tool_mm`](Setup::tool_mm), upside down.
+    /// A board that is switched on at the clock's zero. `physics` gives the pressures at its chips.
+    /// The tool whose pose the physics receives rests at [`tool_mm`](Setup::tool_mm), upside down.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense.
+    /// A setting or a fault that is not valid.
     pub fn new(clock: LabClock, physics: impl Physics + 'static, setup: &Setup) -> Result<Self, SetupError> {
         let tool = TcpPose {
             position_mm: setup.tool_mm.into(),
@@ -48,12 +48,13 @@ impl Microcontroller {
         })
     }
 
-    /// Takes bytes that the host sent: commands, from the next round on.
+    /// Takes bytes that the host sent. Their commands take effect from the next round on.
     pub fn hear(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|byte| self.firmware.hear(*byte));
     }
 
-    /// Does the next round when its time has come, and gives what it found and the bytes that go to the host.
+    /// Waits until the next round is due and carries it out. Returns its report and the bytes for
+    /// the host.
     pub fn round(&mut self) -> (Report<N_TAXELS>, Vec<u8>) {
         let mut bytes = Buffer::<{ longest(N_TAXELS) }>::new();
         let report = now(self.firmware.round(&mut bytes));
@@ -67,7 +68,7 @@ impl Microcontroller {
     }
 }
 
-/// What a board does about a bus that hangs: clocks, and the switch's RESET if it is wired.
+/// How a board frees a hung bus: by clocks, and by the switch's RESET if it is wired.
 fn rescue_of(board: &Board, clock: &LabClock, is_reset_wired: bool) -> Rescue {
     let (mut scl, mut sda) = board.lines();
     let mut reset = board.reset_line();

@@ -1,4 +1,4 @@
-//! What is soldered to the emulated board, and what goes wrong with it.
+//! Settings of the emulated board and its faults.
 
 use phystac::{Chip, Transfer, WiringError};
 use twintac_emulate::i2c::{BoardSettings, PartSettings};
@@ -8,18 +8,19 @@ use twintac_firmware::{Form, NodeSettings};
 /// Taxels of the emulated board.
 pub const N_TAXELS: usize = 8;
 
-/// An emulated board: eight chips behind a switch, and what its firmware is told when it is built.
+/// An emulated board: eight chips behind a switch, and the options with which its firmware is
+/// built.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// The bus and what is on it.
     pub board: BoardSettings,
-    /// What goes wrong.
+    /// Faults.
     pub faults: Vec<ScheduledFault>,
-    /// How the firmware reads.
+    /// How the firmware reads the chips.
     pub node: NodeSettings<N_TAXELS>,
-    /// How it writes until the host says otherwise.
+    /// The form of its output until the host changes it.
     pub form: Form,
-    /// Where the tool rests that the physics is told of, in the robot's base frame, mm.
+    /// Position of the resting tool that the physics receives, in the robot's base frame, mm.
     pub tool_mm: [f64; 3],
     /// Whether a pin is wired to the switch's RESET.
     pub is_reset_wired: bool,
@@ -29,17 +30,18 @@ pub struct Setup {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SetupError {
-    /// A setting of the bus, or a fault, that makes no sense.
+    /// A setting of the bus or a fault that is not valid.
     #[error(transparent)]
     Emulate(#[from] EmulateError),
-    /// Taxels that cannot be told apart.
+    /// A wiring of the taxels that is not valid.
     #[error("the taxels cannot be wired so: {0}")]
     Wiring(#[from] WiringError),
 }
 
 impl Setup {
-    /// Eight chips of a kind behind a switch at 0x70, on a bus of 400 kHz; CSV, as quick as it can be, nothing goes wrong. A CPS135B counts as the
-    /// emulated ones do. The tool presses the surface of [`Hertz`](twintac_emulate::Hertz) by 1 mm.
+    /// Eight chips of a kind behind a switch at 0x70, on a bus of 400 kHz. Output is CSV, at the
+    /// highest rate, without faults. A CPS135B has the scale of the emulated ones. The tool presses
+    /// the surface of [`Hertz`](twintac_emulate::Hertz) by 1 mm.
     ///
     /// # Panics
     /// Never: eight channels of a switch are different places.

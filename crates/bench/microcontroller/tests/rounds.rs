@@ -1,4 +1,4 @@
-//! How many rounds a second there are, and what a round says of what goes wrong, in virtual time.
+//! The rate of rounds, and their reports of faults, in virtual time.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -11,7 +11,7 @@ fn board(setup: &Setup) -> Microcontroller {
     Microcontroller::new(LabClock::virtual_time(), Hertz::default(), setup).unwrap()
 }
 
-/// Rounds until a time, s.
+/// Carries out rounds until a time, s.
 fn rounds_until(board: &mut Microcontroller, end_s: f64) -> Vec<Report<N_TAXELS>> {
     let mut reports = Vec::new();
     while board.clock().now_s() < end_s {
@@ -20,7 +20,7 @@ fn rounds_until(board: &mut Microcontroller, end_s: f64) -> Vec<Report<N_TAXELS>
     reports
 }
 
-/// Rounds a second, from the first to the last.
+/// Rounds per second, from the first round to the last.
 fn rate_hz(reports: &[Report<N_TAXELS>]) -> f64 {
     let (first, last) = (&reports[0], &reports[reports.len() - 1]);
     1e6 * (reports.len() - 1) as f64 / (last.triggered_us - first.triggered_us) as f64
@@ -34,7 +34,7 @@ fn fault(what: FaultKind, begins_s: f64, lasts_s: Option<f64>) -> ScheduledFault
     }
 }
 
-/// Nothing that was not read is a number, and numbers are what the chips feel.
+/// Checks that a taxel that was not read has no number, and that numbers are the true pressures.
 fn check(report: &Report<N_TAXELS>) {
     for taxel in &report.taxels {
         assert_eq!(
@@ -248,7 +248,7 @@ fn a_line_carries_what_a_bus_gives() {
         let mut setup = Setup::of(Chip::Ms5837_30Ba);
         setup.form = form;
         let mut board = board(&setup);
-        board.round(); // which says what the board is
+        board.round(); // reports which board it is
         for _ in 0..100 {
             let (_, bytes) = board.round();
             assert!(bytes.len() <= budget.bytes(), "{form:?}: {} bytes", bytes.len());

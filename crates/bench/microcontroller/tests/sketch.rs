@@ -1,7 +1,8 @@
-//! The sketch for Arduino, compiled for this computer: its bus is a pipe, at whose other end the chips are.
+//! The Arduino sketch, compiled for this computer. Its bus is a pipe with the chips at the other
+//! end.
 //!
-//! Wants a compiler of C++, the one that the variable `CXX` names, or `c++`. If the variable is not set and there is none, the tests say so and
-//! look at nothing.
+//! The tests need a C++ compiler: the one that the variable `CXX` names, or `c++`. If the variable
+//! is not set and there is none, the tests report this and pass without a check.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // a test that does not run says so
 
@@ -26,7 +27,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../firmware")
 }
 
-/// The sketch as a program in a folder; none without a compiler.
+/// The sketch as a program in a folder. `None` without a compiler.
 fn compiled(folder_of: &tempfile::TempDir) -> Option<PathBuf> {
     let asked = std::env::var("CXX");
     let compiler = asked.clone().unwrap_or_else(|_| "c++".to_owned());
@@ -71,14 +72,14 @@ fn compiled(folder_of: &tempfile::TempDir) -> Option<PathBuf> {
     Some(program)
 }
 
-/// What is at the other end of the sketch's pipe, besides a bus.
+/// The other end of the sketch's pipe: a bus, a clock and the reset line.
 struct World<B> {
     bus: B,
     clock: LabClock,
     reset: Box<dyn FnMut()>,
 }
 
-/// Runs the sketch until it has written so many lines.
+/// Runs the sketch until it has written `n` lines.
 fn lines<B: I2c>(program: &Path, world: &mut World<B>, n: usize) -> Vec<String> {
     let mut child = Command::new(program)
         .stdin(Stdio::piped())
@@ -135,7 +136,7 @@ fn answer<B: I2c>(question: &str, world: &mut World<B>) -> String {
     "0".to_owned()
 }
 
-/// What the host makes of the lines.
+/// The frames that the host decodes from the lines.
 fn frames(lines: &[String]) -> Vec<LineFrame> {
     let mut decoder = Decoder::new(&Description::read(folder().join("lines/csv-8.toml")).unwrap(), N);
     let mut frames = Vec::new();
@@ -152,7 +153,7 @@ fn frames(lines: &[String]) -> Vec<LineFrame> {
     frames
 }
 
-/// The switch, and behind each channel a chip that always counts the same.
+/// The switch, and behind each channel a chip that always gives the same counts.
 #[derive(Clone)]
 struct Table {
     mask: u8,
@@ -204,7 +205,8 @@ impl I2c for Table {
 fn the_sketch_reads_what_the_driver_reads_for_the_data_sheets_vectors() {
     let scratch = tempfile::tempdir().unwrap();
     let Some(program) = compiled(&scratch) else { return };
-    // The data sheet's example, counts of cold, of frost and of heat, and of less than nothing.
+    // The data sheet's example, counts for cold, for frost and for heat, and for a pressure below
+    // zero.
     let mut n_out = 0;
     for (pressure, temperature) in [
         (4_958_179, 6_815_414),

@@ -1,33 +1,34 @@
-//! What moves the indenter.
+//! The robot that moves the indenter.
 
 use twintac_rig::xarm::{Client, Wire};
 use twintac_rig::{RigError, TcpPose};
 
 /// A robot that follows servo poses.
 pub trait Arm {
-    /// Sends a pose, to be followed at once, and waits for nothing.
+    /// Sends a pose that the robot follows at once, and does not wait.
     ///
     /// # Errors
     /// The pose cannot be sent, or an earlier one was refused.
     fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError>;
 
-    /// Takes in the answers that have come, and waits for none; for how long the oldest one that is missing has been missing, s.
+    /// Takes in the responses that have arrived, and does not wait. Returns for how long the oldest
+    /// missing response has been missing, s.
     ///
     /// # Errors
     /// A pose was refused.
     fn hear(&mut self) -> Result<f64, RigError>;
 
-    /// Stops the robot until a person has it enabled anew: at once, then waits for it to confirm.
+    /// Stops the robot at once, then waits for its confirmation. A person must enable it again.
     ///
     /// # Errors
-    /// The robot does not confirm: it may be moving.
+    /// The robot does not confirm, so it may be moving.
     fn stop(&mut self) -> Result<(), RigError>;
 
-    /// The error that it has, in words, if it has one and says so.
+    /// The present error of the robot as a text, if it has one and reports it.
     fn error(&mut self) -> Option<String>;
 }
 
-/// After [`Client::begin_servo`].
+/// For use after [`Client::begin_servo`].
 impl<W: Wire> Arm for Client<W> {
     fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
         self.servo(pose)

@@ -1,4 +1,4 @@
-//! Looks into a log that was written for what is missing without a mark.
+//! Reads a finished log again and finds losses that it does not mark.
 
 use std::path::Path;
 
@@ -6,20 +6,21 @@ use twintac_log::{Body, Event, LogReader, Stream};
 
 use crate::PressError;
 
-/// What a log holds.
+/// Content of a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Audit {
     /// Tactile frames.
     pub(crate) frames: u64,
-    /// From the first frame to the last, s.
+    /// Time from the first frame to the last, s.
     pub(crate) frames_s: f64,
     /// Tactile frames, wrenches and poses.
     pub(crate) readings: u64,
-    /// Readings that are missing, and whose gap nothing marks.
+    /// Readings that are missing and whose gap is not marked.
     pub(crate) lost_unmarked: u64,
 }
 
-/// Reads a log. Tactile frames and poses are missing where they are longer apart than allowed, s; wrenches where their own clock jumps.
+/// Reads a log. Tactile frames and poses count as missing where the time between two of them is
+/// longer than allowed, s; wrenches where their own clock jumps.
 pub(crate) fn audit(path: &Path, frame_gap_s: f64, report_gap_s: f64) -> Result<Audit, PressError> {
     let (mut frames, mut poses, mut wrenches, mut gaps) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for message in LogReader::open(path)? {

@@ -1,4 +1,4 @@
-//! What a run would do.
+//! Computes what a run would do.
 
 use serde::{Deserialize, Serialize};
 use twintac_protocol::PressPlan;
@@ -6,12 +6,12 @@ use twintac_rig::TcpPose;
 
 use crate::{Motion, Phase, PressError, PressSettings};
 
-/// What a run would do, were first touch where the surface is described.
+/// What a run would do if first touch were exactly at the described surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DryRun {
     /// The presses.
     pub presses: Vec<PlannedPress>,
-    /// Time of all presses and of their tares, s; without changes of the indenter.
+    /// Time of all presses and their tares, s, without changes of the indenter.
     pub duration_s: f64,
 }
 
@@ -22,24 +22,24 @@ pub struct PlannedPress {
     pub name: String,
     /// Name of the indenter.
     pub indenter: String,
-    /// Time, with its tare, s.
+    /// Time including its tare, s.
     pub duration_s: f64,
-    /// The tool's poses, one each servo period.
+    /// The tool's poses, one for each servo period.
     pub poses: Vec<PlannedPose>,
 }
 
 /// A pose of a dry run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlannedPose {
-    /// Time since the run began, s.
+    /// Time since the start of the run, s.
     pub time_s: f64,
-    /// Whether the indenter is above the gel, with its slow approach counted as well.
+    /// Whether the indenter is above the gel. The slow approach counts as above.
     pub is_above: bool,
     /// The tool's pose in the robot's base frame.
     pub tool: TcpPose,
 }
 
-/// What a run would do that begins with the tool at a pose.
+/// Computes what a run would do that begins with the tool at a pose.
 ///
 /// # Errors
 /// As [`Motion::new`].

@@ -1,4 +1,4 @@
-//! What can go wrong beside the bench itself.
+//! Errors other than those of the test setup itself.
 
 use std::path::Path;
 
@@ -7,15 +7,17 @@ use twintac_config::ConfigError;
 use twintac_log::LogError;
 use twintac_rig::RigError;
 
-/// Why a run did not begin, or could not be recorded. What stops the bench is a [`Cause`](twintac_rig::Cause) instead.
+/// Why a run did not begin, or could not be recorded. A cause to stop the test setup is a
+/// [`Cause`](twintac_rig::Cause) instead.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PressError {
-    /// The bench settings are wrong.
+    /// The settings are wrong.
     #[error(transparent)]
     Settings(#[from] ConfigError),
-    /// Settings that a program made or changed are wrong, or the bench is not watched closely enough.
-    #[error("the bench's settings: `{field}` {problem}; {hint}")]
+    /// Settings that a program made or changed are wrong, or the devices are not supervised closely
+    /// enough.
+    #[error("the hardware configuration: `{field}` {problem}; {hint}")]
     Setting {
         /// The field, as a dotted path.
         field: &'static str,
@@ -24,27 +26,27 @@ pub enum PressError {
         /// What to do about it.
         hint: String,
     },
-    /// The settings do not say where the devices of a real bench are.
+    /// The settings do not say where the devices of a real setup are.
     #[error(
-        "the bench's settings have no [devices]: say where robot, force and tactile are, or press on the emulated bench"
+        "the hardware configuration has no [devices]: say where robot, force and tactile are, or press on the emulated bench"
     )]
     NoDevices,
     /// The sensor's description gives no limits.
     #[error(
-        "the description of sensor `{sensor}` does not say what it stands; add a table [limits] with force_n and depth_mm"
+        "the description of sensor `{sensor}` does not say which force and depth it withstands; add a table [limits] with force_n and depth_mm"
     )]
     NoLimits {
         /// Name of the description.
         sensor: String,
     },
-    /// The controller has another tool than the settings.
+    /// The robot's controller has another tool centre point than the settings.
     #[error(
-        "the robot's controller has a TCP offset of {found_mm} mm, and `devices.tcp_offset_mm` is {expected_mm}: poses would end elsewhere; make them equal and measure [placement] again"
+        "the robot's controller has a TCP offset of {found_mm} mm, and `devices.tcp_offset_mm` is {expected_mm}: the robot would go to wrong poses; make them equal and measure [placement] again"
     )]
     OtherTool {
-        /// The controller's tool centre point in the flange's frame, mm.
+        /// The tool centre point of the controller in the flange's frame, mm.
         found_mm: DVec3,
-        /// The one of the settings, mm.
+        /// The tool centre point of the settings, mm.
         expected_mm: DVec3,
     },
     /// The supervisor refuses the settings.
@@ -62,7 +64,7 @@ pub enum PressError {
         source: std::io::Error,
     },
     /// The folder holds another run.
-    #[error("{folder} holds a run of other presses: {problem}; choose another folder")]
+    #[error("{folder} has a run of other presses: {problem}; choose another folder")]
     OtherRun {
         /// The folder.
         folder: String,
@@ -70,7 +72,7 @@ pub enum PressError {
         problem: String,
     },
     /// No thread could be started.
-    #[error("no thread for {what}: {source}")]
+    #[error("cannot start a thread for {what}: {source}")]
     Thread {
         /// What it is for.
         what: &'static str,

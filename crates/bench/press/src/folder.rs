@@ -11,7 +11,7 @@ use crate::PressError;
 
 const PROGRESS: &str = "progress.json";
 
-/// The logs in a run's folder of the presses that are done, in the order of the plans.
+/// The logs of the finished presses in a run's folder, in the order of the plans.
 ///
 /// # Errors
 /// A folder of another run.
@@ -19,7 +19,7 @@ pub fn done_logs(folder: &Path, plans: &[PressPlan]) -> Result<Vec<PathBuf>, Pre
     Ok(Folder::open(folder, plans)?.done())
 }
 
-/// That a folder is none of another run's. Nothing is written.
+/// Checks that a folder does not belong to another run. Nothing is written.
 ///
 /// # Errors
 /// As for [`done_logs`].
@@ -27,7 +27,7 @@ pub fn check_folder(folder: &Path, plans: &[PressPlan]) -> Result<(), PressError
     State::read(folder, plans).map(|_| ())
 }
 
-/// A run's folder: a log for each press, and which of them are done.
+/// A run's folder: one log for each press, and which presses are done.
 #[derive(Debug)]
 pub(crate) struct Folder {
     path: PathBuf,
@@ -43,7 +43,7 @@ struct State {
 }
 
 impl State {
-    /// What a folder says, or that nothing is done in one that says nothing.
+    /// Reads the state of a folder. In a folder without a state nothing is done.
     fn read(folder: &Path, plans: &[PressPlan]) -> Result<Self, PressError> {
         let file = folder.join(PROGRESS);
         let other = |problem: String| PressError::OtherRun {
@@ -70,7 +70,7 @@ impl State {
 }
 
 impl Folder {
-    /// Opens a folder for these presses, or makes it.
+    /// Opens the folder of these presses, or creates it.
     pub(crate) fn open(path: &Path, plans: &[PressPlan]) -> Result<Self, PressError> {
         let state = State::read(path, plans)?;
         fs::create_dir_all(path).map_err(|source| PressError::file(path, source))?;
@@ -86,7 +86,7 @@ impl Folder {
         self.state.done.get(index).copied().unwrap_or(false)
     }
 
-    /// Where a press is recorded. What an earlier try left there is set aside.
+    /// The path of the log of a press. A log of an earlier attempt is renamed.
     pub(crate) fn log(&self, index: usize) -> Result<PathBuf, PressError> {
         let log = self.path_of(index);
         self.set_aside(&log)?;
@@ -94,7 +94,7 @@ impl Folder {
         Ok(log)
     }
 
-    /// Gives a file another name, if it is there: no recording is ever thrown away. Its new name.
+    /// Renames a file if it exists, because no recording is ever deleted. Returns its new name.
     pub(crate) fn set_aside(&self, file: &Path) -> Result<PathBuf, PressError> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let stem = name.split('.').next().unwrap_or_default();
@@ -110,7 +110,7 @@ impl Folder {
         }
     }
 
-    /// The logs of the presses that are done, in their order.
+    /// The logs of the finished presses, in order.
     fn done(&self) -> Vec<PathBuf> {
         (0..self.state.plans.len())
             .filter(|index| self.is_done(*index))
@@ -136,7 +136,7 @@ impl Folder {
             let mut written = fs::File::create(&partial)?;
             written.write_all(text.as_bytes())?;
             written.write_all(b"\n")?;
-            // What is called done stays done if the power fails.
+            // A press that is stored as done stays so after a power cut.
             written.sync_all()?;
             fs::rename(&partial, &file)?;
             fs::File::open(&self.path)?.sync_all()

@@ -1,4 +1,4 @@
-//! What goes into a press's log.
+//! Writes the messages of one press to its log.
 
 use twintac_log::{
     Body, Event, LogError, LogSender, Message, PoseReading, Stream, TactileFrame, WrenchReading,
@@ -17,21 +17,22 @@ pub(crate) struct Journal {
     taxels: Vec<twintac_log::TaxelState>,
 }
 
-/// Whether a stream goes on without a gap.
+/// Tracks whether a stream has gaps.
 #[derive(Debug)]
 struct Continuity {
     stream: Stream,
     longest_s: f64,
     begun_s: f64,
     last_s: Option<f64>,
-    /// Time of all intervals that are no gaps, s, and their number: what is missing in a gap is counted by their mean.
+    /// Total time of all intervals without a gap, s, and their number. Their mean gives the number
+    /// of messages that a gap lacks.
     whole_s: f64,
     n_whole: u32,
     problem: Option<String>,
 }
 
 impl Journal {
-    /// Of a log that begins at a time, s.
+    /// For a log that begins at a time, s.
     pub(crate) fn new(log: LogSender, begun_s: f64, frame_gap_s: f64, report_gap_s: f64) -> Self {
         Self {
             log,
@@ -43,7 +44,7 @@ impl Journal {
         }
     }
 
-    /// What the log does not take because it is behind is marked by the log itself.
+    /// Messages that the log refuses because it is behind are marked by the log itself.
     fn send(&mut self, bench_s: f64, body: Body) -> Result<(), LogError> {
         if !matches!(body, Body::Event(_)) {
             self.handed += 1;
@@ -76,7 +77,7 @@ impl Journal {
         self.send(bench_s, Body::Tactile(frame))
     }
 
-    /// Why the next gap in the tactile frames is there.
+    /// Stores the cause of the next gap in the tactile frames.
     pub(crate) fn no_frame(&mut self, problem: String) {
         self.frames.problem.get_or_insert(problem);
     }
@@ -109,7 +110,7 @@ impl Journal {
         self.send(bench_s, Body::Pose(reading))
     }
 
-    /// The log ends: streams that fell silent before have a gap up to here.
+    /// Ends the log. Streams that fell silent before get a gap up to here.
     pub(crate) fn end(&mut self, bench_s: f64) -> Result<(), LogError> {
         let gaps = [self.frames.go_on(bench_s), self.reports.go_on(bench_s)];
         gaps.into_iter()
@@ -131,12 +132,12 @@ impl Continuity {
         }
     }
 
-    /// The gap that ends now, if there is one.
+    /// Returns the gap that ends now, if there is one.
     fn go_on(&mut self, now_s: f64) -> Option<Event> {
         let problem = self.problem.take();
         let last_s = match self.last_s.replace(now_s) {
             Some(last_s) => last_s,
-            // Before the first one, only what is known to be missing is.
+            // Before the first message a gap exists only if a loss is known.
             None if problem.is_some() => self.begun_s.min(now_s),
             None => return None,
         };

@@ -10,22 +10,22 @@ use twintac_shape::Pose;
 
 use crate::{PressError, PressSettings};
 
-/// What a press is doing.
+/// The phase of a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Above the gel.
+    /// Travels above the gel.
     Travel,
-    /// Slowly down, until first touch.
+    /// Moves down slowly until first touch.
     Approach,
-    /// Down to the planned depth below first touch.
+    /// Moves down to the planned depth below first touch.
     Press,
-    /// At depth.
+    /// Stays at depth.
     Hold,
-    /// Up again.
+    /// Moves up again.
     Retreat,
 }
 
-/// A straight way.
+/// A straight segment.
 #[derive(Clone, Copy, Debug)]
 struct Leg {
     phase: Phase,
@@ -34,9 +34,10 @@ struct Leg {
     duration_s: f64,
 }
 
-/// The poses of one press, one servo period after the other.
+/// The poses of one press, one for each servo period.
 ///
-/// It knows no clock: a period that comes late is no larger step. Positions are the indenter's; heights count from the gel's surface at rest.
+/// It has no clock: a late period does not make a step larger. Positions are those of the indenter;
+/// heights count from the gel's surface at rest.
 #[derive(Clone, Debug)]
 pub struct Motion {
     settings: PressSettings,
@@ -50,7 +51,8 @@ impl Motion {
     /// A press that begins with the tool at a pose.
     ///
     /// # Errors
-    /// [`PressError::Plan`]: a number of the plan that is none, or a speed or depth that is not above zero.
+    /// [`PressError::Plan`]: a number of the plan that is not finite, or a speed or depth that is
+    /// not above zero.
     pub fn new(settings: &PressSettings, plan: &PressPlan, start: &TcpPose) -> Result<Self, PressError> {
         for (field, found, least) in [
             ("x_mm", plan.x_mm, f64::MIN),
@@ -86,19 +88,20 @@ impl Motion {
         Ok(motion)
     }
 
-    /// The tool's pose with the indenter at first touch, were the surface where it is described.
+    /// The tool's pose with the indenter at first touch, if the surface is where it is described.
     #[must_use]
     pub(crate) fn at_surface(&self) -> TcpPose {
         self.settings.placement.tool(&self.over_place(0.0))
     }
 
-    /// What comes next; `None` when there is nothing left.
+    /// The present phase. `None` at the end.
     #[must_use]
     pub fn phase(&self) -> Option<Phase> {
         self.legs.front().map(|leg| leg.phase)
     }
 
-    /// The pose of the next servo period; `None` when there is none left. An approach that ends without [`touch`](Self::touch) is the end.
+    /// The pose of the next servo period. `None` at the end. An approach that ends without
+    /// [`touch`](Self::touch) ends the motion.
     pub(crate) fn next_pose(&mut self) -> Option<TcpPose> {
         self.elapsed_s += self.settings.servo_period_s;
         while let Some(leg) = self.legs.front()
@@ -113,7 +116,8 @@ impl Motion {
         Some(self.settings.placement.tool(&self.at))
     }
 
-    /// Touched, with the indenter at a height: the depth counts from there. Without effect but in an approach.
+    /// First touch, with the indenter at a height, mm. The depth counts from there. Has no effect
+    /// outside of an approach.
     pub fn touch(&mut self, height_mm: f64) {
         if self.phase() != Some(Phase::Approach) {
             return;
@@ -160,7 +164,7 @@ impl Motion {
         });
     }
 
-    /// Eased in and out, so that its highest speed is π/2 of its mean.
+    /// Accelerates and decelerates smoothly, so that the highest speed is π/2 of the mean speed.
     fn travel_to(&mut self, to: Pose) {
         let from = self.end();
         let way_s = from.position_mm.distance(to.position_mm) / self.settings.travel_speed_mm_per_s;

@@ -1,26 +1,28 @@
-//! Where gel and indenter stand.
+//! Poses of gel and indenter.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use twintac_rig::TcpPose;
 use twintac_shape::Pose;
 
-/// Where the gel stands in the robot's frame, and the indenter in the tool's.
+/// The pose of the gel in the robot's base frame, and of the indenter in the tool's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Placement {
-    /// Where the gel's frame, z up and zero at the board, stands in the robot's base frame.
+    /// Pose of the gel's frame (z up, zero at the board) in the robot's base frame.
     pub base_from_gel: Pose,
-    /// Where the indenter's frame, z up and zero at its point of first touch, sits in the tool's frame.
+    /// Pose of the indenter's frame (z up, zero at its point of first touch) in the tool's frame.
     pub tool_from_indenter: Pose,
     /// Height of the gel's surface above the board, mm.
     pub surface_mm: f64,
-    /// Direction in the force sensor's frame such that `force · axis` is the force of the indenter on the gel along -z.
+    /// Direction in the force sensor's frame. `force · axis` is the force of the indenter on the
+    /// gel along -z.
     pub force_axis: DVec3,
 }
 
 impl Placement {
-    /// Where the tool has to be for the indenter to be somewhere: heights count from the gel's surface at rest, places as in the protocol.
+    /// The tool's pose for a pose of the indenter. Heights count from the gel's surface at rest,
+    /// locations as in the protocol.
     #[must_use]
     pub fn tool(&self, above_surface: &Pose) -> TcpPose {
         let gel = &self.base_from_gel;
@@ -30,7 +32,7 @@ impl Placement {
         TcpPose::new(position_mm, rotation)
     }
 
-    /// Where the indenter is: [`tool`](Self::tool) backwards.
+    /// The indenter's pose for a pose of the tool: the inverse of [`tool`](Self::tool).
     #[must_use]
     pub fn indenter(&self, tool: &TcpPose) -> Pose {
         let gel = &self.base_from_gel;
@@ -76,7 +78,7 @@ mod tests {
         let back = placement.indenter(&placement.tool(&indenter));
         assert!(back.position_mm.distance(indenter.position_mm) < 1e-9);
         assert!(back.rotation.dot(indenter.rotation).abs() > 1.0 - 1e-12);
-        // A tool that points down stands above its indenter.
+        // A tool that points down is above its indenter.
         let level = Placement {
             base_from_gel: Pose::from_position(DVec3::new(300.0, 20.0, 50.0)),
             ..placement

@@ -11,16 +11,17 @@ use crate::journal::Journal;
 use crate::touch::Touch;
 use crate::{Arm, Heard, Motion, Phase, PressError, PressSettings, Source, StreamEvent};
 
-/// How long a retreat may wait for the force to be steady, s: a robot goes on for as long as it lags behind.
+/// Longest time that a retreat waits for a steady force, s. A robot keeps moving while it lags
+/// behind.
 const RETREAT_WAIT_S: f64 = 0.1;
 
-/// How a press stands after a period.
+/// State of a press after a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
     Going,
-    /// Every pose went out.
+    /// Every pose was sent.
     Done,
-    /// It was stopped, and the robot has gone back as far as that is safe.
+    /// It was stopped, and the robot has moved back as far as that is safe.
     Stopped,
 }
 
@@ -40,19 +41,19 @@ pub(crate) struct Press<'a> {
     goal: TcpPose,
     phase: Option<Phase>,
     has_begun: bool,
-    /// When no pose went out for the first time.
+    /// Time at which no pose was sent for the first time.
     held_s: Option<f64>,
     has_retreated: bool,
-    /// What there is to say about the stop.
+    /// Remarks about the stop.
     pub(crate) remarks: Vec<String>,
-    /// Whether the robot confirmed that it stopped.
+    /// Whether the robot confirmed its stop.
     pub(crate) is_stop_confirmed: bool,
-    /// From the arrival of what stopped the press to its stop, s.
+    /// Time from the arrival of the cause to the stop, s.
     pub(crate) stop_latency_s: Option<f64>,
 }
 
 impl<'a> Press<'a> {
-    /// A press that begins where the robot is, with a wrench that is no load.
+    /// A press that begins at the robot's present pose, with the wrench that counts as zero load.
     pub(crate) fn new(
         settings: &PressSettings,
         sensor: &SensorLimits,
@@ -88,12 +89,12 @@ impl<'a> Press<'a> {
         })
     }
 
-    /// Why it was stopped.
+    /// The cause of the stop.
     pub(crate) fn cause(&self) -> Option<&Cause> {
         self.supervisor.cause()
     }
 
-    /// One servo period: first what was heard, then at most one pose.
+    /// Carries out one servo period: first what was heard, then at most one pose.
     pub(crate) fn period(
         &mut self,
         now_s: f64,
@@ -124,7 +125,7 @@ impl<'a> Press<'a> {
                 Ok(Standing::Going)
             }
             Decision::Retreat(pose) => {
-                self.has_retreated = true; // one that ends has ended
+                self.has_retreated = true; // a retreat that ended is not resumed
                 match arm.servo(&pose) {
                     Ok(()) => Ok(Standing::Going),
                     Err(_) => self.stop(now_s, arm),
@@ -142,7 +143,7 @@ impl<'a> Press<'a> {
         }
     }
 
-    /// An answer that is missing is a silence since its pose went out.
+    /// A missing response counts as a silence since its pose was sent.
     fn hear_answers(&mut self, now_s: f64, arm: &mut impl Arm) {
         match arm.hear() {
             Ok(missing_s) => {
@@ -183,7 +184,8 @@ impl<'a> Press<'a> {
         Ok(Standing::Stopped)
     }
 
-    /// A silence counts from when it was too long; anything else from its arrival.
+    /// The latency of a silence counts from when it became too long, that of any other cause from
+    /// its arrival.
     fn note_latency(&mut self, since_arrival_s: f64) {
         let latency_s = match self.cause() {
             Some(Cause::StreamSilent {
@@ -196,7 +198,7 @@ impl<'a> Press<'a> {
         self.stop_latency_s.get_or_insert(latency_s);
     }
 
-    /// Tells the supervisor first; what arrived, if anything, arrived at `arrived_s`.
+    /// Passes an event to the supervisor first. `arrived_s` is its time of arrival.
     fn observe(&mut self, now_s: f64, arrived_s: f64, event: Observation) {
         let was_stopped = self.cause().is_some();
         let is_stopped = self.supervisor.observe(now_s, event).is_some();
@@ -243,7 +245,8 @@ impl<'a> Press<'a> {
         }
     }
 
-    /// The next pose of the motion; `None` at its end. An approach without touch is a cause to stop.
+    /// The next pose of the motion. `None` at its end. An approach without touch is a cause to
+    /// stop.
     fn next_goal(&mut self, now_s: f64) -> Result<Option<TcpPose>, LogError> {
         let before = self.motion.phase();
         if before == Some(Phase::Approach) && self.touch.is_touching() {
@@ -276,7 +279,7 @@ impl<'a> Press<'a> {
         Ok(goal)
     }
 
-    /// Begins and ends the press in the log.
+    /// Marks the beginning and the end of the press in the log.
     fn mark(&mut self, now_s: f64) -> Result<(), LogError> {
         let name = self.plan.name.clone();
         match self.phase {

@@ -14,12 +14,12 @@ const SENSOR: SensorLimits = SensorLimits {
     depth_mm: 4.0,
 };
 
-/// An arm that is where it is told to be, on a gel of 1 N/mm without noise.
+/// An arm that is always at its commanded pose, on a gel of 1 N/mm, without noise.
 #[derive(Debug)]
 struct Fake {
     poses: Vec<TcpPose>,
     stops: usize,
-    /// For how long an answer has been missing, s.
+    /// How long a response has been missing, s.
     missing_s: f64,
 }
 
@@ -74,7 +74,7 @@ fn plan(depth_mm: f64) -> PressPlan {
     }
 }
 
-/// A press, period by period, in a time of its own.
+/// A press, period by period, in its own time.
 struct Script {
     folder: TempDir,
     settings: PressSettings,
@@ -86,9 +86,9 @@ struct Script {
 
 struct Outcome {
     cause: Option<Cause>,
-    /// Number of the period in which what stops the press was said, and number of poses that had gone out before it.
+    /// Latency of the stop, s.
     latency_s: Option<f64>,
-    /// Periods from that of the cause to that of the command to stop.
+    /// Periods from the period of the cause to that of the stop command.
     periods_to_stop: usize,
     arm: Fake,
     events: Vec<Event>,
@@ -111,7 +111,7 @@ impl Script {
         }
     }
 
-    /// Runs; `say` adds to what is heard, or takes from it, with the depth and the time.
+    /// Runs the press. `say` changes what is heard, given the time and the depth.
     fn run(&self, mut say: impl FnMut(f64, f64, &mut Vec<Heard>) -> bool) -> Outcome {
         let path = self.folder.path().join("press.mcap");
         let recorder = Recorder::create(&path, &description()).unwrap();
@@ -279,7 +279,7 @@ fn the_press_goes_as_deep_as_planned_below_first_touch() {
         _ => None,
     });
     assert!(note.unwrap().starts_with("first touch"), "{:?}", outcome.events);
-    // Touch at 0.1 N is 0.1 mm below the surface, and felt a window later.
+    // A touch of 0.1 N is 0.1 mm below the surface, and is detected one window later.
     let touch_mm = outcome.deepest_mm - 1.5;
     assert!((0.1..0.2).contains(&touch_mm), "{touch_mm}");
     let kinds: Vec<bool> = outcome
@@ -296,7 +296,7 @@ fn the_press_goes_as_deep_as_planned_below_first_touch() {
 
 #[test]
 fn force_before_the_approach_is_no_first_touch() {
-    // The gel stands higher than described: there is force already above the surface.
+    // The gel is higher than described: there is a force above the described surface.
     let outcome = Script::new(1.5).run(|now_s, depth_mm, heard| {
         if depth_mm > -2.0 {
             heard.extend(self::heard(now_s, 1.0, &above()).into_iter().take(2));

@@ -1,4 +1,5 @@
-//! The bench at rest before a press: where the robot is, and the wrench that counts as no load.
+//! The setup at rest before a press: the pose of the robot, and the wrench that counts as zero
+//! load.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -10,17 +11,19 @@ use twintac_rig::{Cause, Start, TcpPose, Wrench};
 use crate::journal::Journal;
 use crate::{Heard, PressError, PressSettings, Source, StreamEvent, Streams};
 
-/// How long a device may take to be heard at all, s; or as long as it may be silent, if that is longer.
+/// Longest time until a device is heard for the first time, s, unless its allowed silence is
+/// longer.
 const FIRST_WORDS_S: f64 = 2.0;
 
-/// The bench at rest.
+/// The setup at rest.
 pub(crate) struct Rest {
     pub(crate) start: Start,
-    /// The mean wrench, which is no load.
+    /// The mean wrench, which counts as zero load.
     pub(crate) tare: Wrench,
 }
 
-/// Listens while nothing moves, until every device was heard and the tare is long enough. Why nothing can be pressed, if so.
+/// Listens while nothing moves, until every device was heard and the tare is long enough. The inner
+/// error is why nothing can be pressed.
 pub(crate) fn rest(
     settings: &PressSettings,
     streams: &Streams,
@@ -57,7 +60,7 @@ pub(crate) fn rest(
     }
 }
 
-/// What was heard while nothing moves.
+/// What was heard while nothing moved.
 #[derive(Default)]
 struct Listening {
     force_sum_n: DVec3,
@@ -69,7 +72,8 @@ struct Listening {
 }
 
 impl Listening {
-    /// Takes in what a device said; why nothing can be pressed, if it says so.
+    /// Takes in a message of a device. Returns a cause if the message means that nothing can be
+    /// pressed.
     fn hear(&mut self, heard: Heard, journal: &mut Journal) -> Result<Option<Cause>, LogError> {
         let Heard { bench_s, event } = heard;
         match event {
@@ -98,7 +102,7 @@ impl Listening {
         Ok(None)
     }
 
-    /// The first device that was not heard yet, and for how long it may stay silent, s.
+    /// The first device that was not heard yet, and its longest allowed silence, s.
     fn silent(&self, settings: &PressSettings) -> Option<(Source, f64)> {
         let devices = [
             (self.n_wrenches == 0, Source::Force, settings.force_silence_s),
@@ -109,7 +113,7 @@ impl Listening {
         silent.map(|(_, source, silence_s)| (source, FIRST_WORDS_S.max(silence_s)))
     }
 
-    /// The tare, and where the press starts; why nothing can be pressed, if what was heard says so.
+    /// The tare and the start of the press. The inner error is why nothing can be pressed.
     fn end(
         &self,
         settings: &PressSettings,
@@ -123,7 +127,7 @@ impl Listening {
             torque_n_mm: self.torque_sum_n_mm / n,
         };
         let found_n = tare.force_n.length();
-        let is_small = found_n <= settings.largest_tare_n; // NaN is not
+        let is_small = found_n <= settings.largest_tare_n; // false for NaN
         if !is_small {
             return Ok(Err(Cause::LimitExceeded {
                 limit: "force without load",
@@ -137,7 +141,7 @@ impl Listening {
             return Ok(Err(Cause::DeviceError {
                 stream: Source::Robot.to_string(),
                 problem: format!(
-                    "the indenter stands {height_mm:.2} mm above the gel and may touch it: raise it to {} mm or more",
+                    "the indenter is {height_mm:.2} mm above the gel and may touch it: raise it to {} mm or more",
                     settings.approach_height_mm
                 ),
             }));

@@ -1,4 +1,4 @@
-//! Press after press.
+//! Carries out press after press.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,19 +15,19 @@ use crate::press::{Press, Standing};
 use crate::rest::{Rest, rest};
 use crate::{Arm, Mounting, Operator, PressError, PressSettings, Streams};
 
-/// How long to wait before asking again whether an indenter is mounted.
+/// Time between two questions whether an indenter is mounted.
 const MOUNTING: Duration = Duration::from_millis(20);
 
-/// A robot in servo mode, and what hears all devices.
+/// A robot in servo mode, and the streams of all devices.
 #[derive(Debug)]
 pub struct Bench<A> {
     /// The robot.
     pub arm: A,
-    /// What hears it, and the sensors.
+    /// The streams of the robot and the sensors.
     pub streams: Streams,
 }
 
-/// Carries out presses, within limits that were checked.
+/// Carries out presses within limits that were checked.
 #[derive(Clone, Debug)]
 pub struct Runner {
     settings: PressSettings,
@@ -35,39 +35,43 @@ pub struct Runner {
     description: Description,
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSummary {
-    /// Tactile frames a second, over the time that was recorded, Hz.
+    /// Tactile frames per second over the recorded time, Hz.
     pub rate_hz: f64,
     /// Tactile frames in this run's logs.
     pub frames: u64,
-    /// Readings that are missing in the logs without a mark, as found by reading them again.
+    /// Readings that are missing in the logs without a mark, found by reading the logs again.
     pub lost_unmarked: u64,
-    /// Presses that are done, those of earlier runs included.
+    /// Presses that are done, including those of earlier runs.
     pub presses_done: usize,
     /// Why the run was stopped.
     pub stopped: Option<Cause>,
-    /// What else there is to say about the stop.
+    /// Further remarks about the stop.
     pub remarks: Vec<String>,
-    /// Whether the robot confirmed that it stopped, if it was told to: one that did not may be pressing.
+    /// Whether the robot confirmed its stop, if it was told to stop. A robot that did not confirm
+    /// may still be pressing.
     pub is_stop_confirmed: bool,
-    /// From the arrival of what stopped it to the stop, in servo periods.
+    /// Time from the arrival of the cause to the stop, in servo periods.
     pub stop_latency_periods: Option<f64>,
 }
 
 /// A run under way.
 struct Progress {
     summary: RunSummary,
-    /// Time from the first tactile frame to the last, of all logs, s; and the intervals between frames in it.
+    /// Time from the first tactile frame to the last, summed over all logs, s, and the number of
+    /// intervals between frames in it.
     frames_s: f64,
     intervals: u64,
 }
 
 impl Runner {
-    /// What carries out presses with these settings, on a sensor that has these limits ([`sensor_limits`](crate::sensor_limits)).
-    /// `description` says what the logs are about; the run sets its placement and the start of its clock. Where its provenance is
-    /// [`Real`](twintac_recording::Provenance::Real), the devices may be silent for 0.1 s (force sensor) and 0.5 s (others) at most.
+    /// A runner with these settings, for a sensor with these limits
+    /// ([`sensor_limits`](crate::sensor_limits)). `description` describes the logs; the run sets
+    /// its placement and the start of its clock. If its provenance is
+    /// [`Real`](twintac_recording::Provenance::Real), the settings must not allow a longer silence
+    /// than 0.1 s for the force sensor and 0.5 s for the other devices.
     ///
     /// # Errors
     /// [`PressError::Setting`].
@@ -84,11 +88,12 @@ impl Runner {
         })
     }
 
-    /// Carries out the presses that the folder does not hold yet, one log each, until all are done, something is wrong, or `interrupt` is
-    /// set.
+    /// Carries out the presses that the folder does not hold yet, with one log each, until all are
+    /// done, something is wrong, or `interrupt` is set.
     ///
     /// # Errors
-    /// Settings or plans that cannot be carried out, a folder of another run, a disk that fails. The robot is stopped then.
+    /// Settings or plans that cannot be carried out, a folder of another run, a disk that fails.
+    /// The robot is then stopped.
     pub fn run<A: Arm>(
         &self,
         bench: &mut Bench<A>,
@@ -99,7 +104,7 @@ impl Runner {
     ) -> Result<RunSummary, PressError> {
         let run = self.run_presses(bench, plans, out, interrupt, operator);
         if run.is_err() {
-            // The error is the one that is told.
+            // The first error is the one to report.
             let _ = bench.arm.stop();
         }
         run
@@ -114,7 +119,7 @@ impl Runner {
         operator: &mut dyn Operator,
     ) -> Result<RunSummary, PressError> {
         let mut folder = Folder::open(out, plans)?;
-        let _ = bench.streams.heard().count(); // what is older than this run
+        let _ = bench.streams.heard().count(); // discards what is older than this run
         let description = self.describe(&bench.streams);
         let mut progress = Progress::new();
         let mut mounted = None;
@@ -148,7 +153,8 @@ impl Runner {
         Ok(progress.finish())
     }
 
-    /// One press with its log, which is read again afterwards; why the press was stopped.
+    /// Carries out one press with its log, and reads the log again afterwards. Returns the cause if
+    /// the press was stopped.
     fn record<A: Arm>(
         &self,
         bench: &mut Bench<A>,
@@ -185,7 +191,7 @@ impl Runner {
     fn describe(&self, streams: &Streams) -> Description {
         let unix_ns = SystemTime::now()
             .duration_since(UNIX_EPOCH)
-            .map_or(0, |since| since.as_nanos() as u64); // until the year 2554
+            .map_or(0, |since| since.as_nanos() as u64); // overflows after the year 2554
         let bench_ns = (streams.clock().now_s() * 1e9) as u64;
         let placement = &self.settings.placement;
         Description {
@@ -197,7 +203,7 @@ impl Runner {
         }
     }
 
-    /// One press; why it was stopped. How it was goes into the summary.
+    /// Carries out one press. Returns the cause if it was stopped. Details go into the summary.
     fn press<A: Arm>(
         &self,
         bench: &mut Bench<A>,
@@ -213,7 +219,7 @@ impl Runner {
         let period_s = self.settings.servo_period_s;
         let mut due_s = clock.now_s();
         loop {
-            // A period that came late is not caught up with.
+            // A late period is not caught up with.
             due_s = (due_s + period_s).max(clock.now_s());
             std::thread::sleep(Duration::from_secs_f64((due_s - clock.now_s()).max(0.0)));
             let is_interrupted = interrupt.load(Ordering::Relaxed);
@@ -250,14 +256,14 @@ impl Progress {
         }
     }
 
-    /// Stops a robot that was not sent a pose since the last press.
+    /// Stops a robot that got no pose since the last press.
     fn stop_at_rest(&mut self, arm: &mut impl Arm) {
         self.summary.is_stop_confirmed = arm.stop().is_ok();
         self.summary.remarks.extend(arm.error());
     }
 
-    /// Adds what a log holds; `vanished` are readings that were handed over, that the log lacks, and that it did not refuse. What it
-    /// refused, it has marked.
+    /// Adds the content of a log. `vanished` are readings that were handed over, that the log
+    /// lacks, and that it did not refuse. Refused readings are marked in the log.
     fn count(&mut self, found: &Audit, vanished: u64) {
         self.summary.frames += found.frames;
         self.summary.lost_unmarked += found.lost_unmarked + vanished;
@@ -273,7 +279,8 @@ impl Progress {
     }
 }
 
-/// Waits for an indenter to be mounted, and hears everything meanwhile. Why it is not, if it isn't.
+/// Waits until an indenter is mounted, and listens to all devices meanwhile. Returns the cause if
+/// it will not be mounted.
 fn mount(
     streams: &Streams,
     operator: &mut dyn Operator,

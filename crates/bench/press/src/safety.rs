@@ -1,4 +1,4 @@
-//! What must hold of a bench before anything on it moves.
+//! Conditions that must hold before anything moves.
 
 use twintac_recording::Provenance;
 use twintac_rig::SensorLimits;
@@ -7,14 +7,14 @@ use twintac_sensor::Sensor;
 
 use crate::{Devices, PressError, PressSettings};
 
-/// Longest silence of the force sensor on a bench that moves something real, s.
+/// Longest allowed silence of the force sensor on a real setup, s.
 const LONGEST_FORCE_SILENCE_S: f64 = 0.1;
-/// Longest silence of the robot or of the tactile sensor on such a bench, s.
+/// Longest allowed silence of the robot or of the tactile sensor on a real setup, s.
 const LONGEST_SILENCE_S: f64 = 0.5;
-/// How far the controller's tool centre point may be from the expected one, mm.
+/// Largest distance of the controller's tool centre point from the expected one, mm.
 const SAME_TOOL_MM: f64 = 0.01;
 
-/// The limits that the description of a sensor gives. A sensor without limits is not pressed.
+/// The limits in the description of a sensor. A sensor without limits is not pressed.
 ///
 /// # Errors
 /// [`PressError::NoLimits`].
@@ -29,17 +29,18 @@ pub fn sensor_limits(sensor: &Sensor) -> Result<SensorLimits, PressError> {
 }
 
 impl PressSettings {
-    /// The devices of a bench that moves something real.
+    /// The devices of a real setup.
     ///
     /// # Errors
-    /// [`PressError::NoDevices`]: the settings name none. [`PressError::Setting`]: a device may be silent for too long.
+    /// [`PressError::NoDevices`]: the settings name no devices. [`PressError::Setting`]: a device
+    /// may be silent for too long.
     pub fn real_devices(&self) -> Result<&Devices, PressError> {
         let devices = self.devices.as_ref().ok_or(PressError::NoDevices)?;
         self.check_for(Provenance::Real)?;
         Ok(devices)
     }
 
-    /// Checks every field, and for a bench that moves something real also how long its devices may be silent.
+    /// Checks every field and, for a real setup, also the allowed silences of its devices.
     pub(crate) fn check_for(&self, provenance: Provenance) -> Result<(), PressError> {
         if let Some((field, problem, hint)) = self.problem() {
             return Err(PressError::Setting { field, problem, hint });
@@ -52,9 +53,9 @@ impl PressSettings {
             ("robot_silence_s", self.robot_silence_s, LONGEST_SILENCE_S),
             ("tactile_silence_s", self.tactile_silence_s, LONGEST_SILENCE_S),
         ] {
-            let is_watched_closely = silence_s <= longest_s; // NaN is not
+            let is_watched_closely = silence_s <= longest_s; // false for NaN
             if !is_watched_closely {
-                let problem = format!("is {silence_s} on a bench that moves something real");
+                let problem = format!("is {silence_s} on a test setup with a real robot");
                 let hint = match field {
                     "force_silence_s" => "give at most 0.1 s",
                     _ => "give at most 0.5 s",
@@ -71,13 +72,14 @@ impl PressSettings {
 }
 
 impl Devices {
-    /// That the controller's tool is the one that placement and limits count from.
+    /// Checks that the controller's tool centre point is the one to which placement and limits
+    /// refer.
     ///
     /// # Errors
     /// [`PressError::OtherTool`].
     pub fn check_tool(&self, found: &RobotStatus) -> Result<(), PressError> {
         let found_mm = found.tcp_offset.position_mm;
-        let is_same = found_mm.distance(self.tcp_offset_mm) <= SAME_TOOL_MM; // NaN is not
+        let is_same = found_mm.distance(self.tcp_offset_mm) <= SAME_TOOL_MM; // false for NaN
         is_same.then_some(()).ok_or(PressError::OtherTool {
             found_mm,
             expected_mm: self.tcp_offset_mm,

@@ -1,4 +1,4 @@
-//! The bench settings that people write.
+//! Settings of a test setup, which people write.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -7,44 +7,45 @@ use twintac_rig::{Limits, Retreat, Setup};
 
 use crate::Placement;
 
-/// Largest heights and speeds above the gel: no bench of an arm has more.
+/// Largest heights and speeds above the gel: no robot arm needs more.
 const MOST_MM: f64 = 1000.0;
 const MOST_RAD_PER_S: f64 = 10.0;
-/// Farthest from the robot's base, mm.
+/// Largest distance from the robot's base, mm.
 const FARTHEST_MM: f64 = 10_000.0;
 const MOST_N: f64 = 1000.0;
-/// Longest of the times that something is waited for.
+/// Largest waiting time, s.
 const MOST_S: f64 = 60.0;
-/// A second: barometers convert in milliseconds.
+/// One second, in µs. Barometers convert in milliseconds.
 const MOST_CONVERSION_US: f64 = 1e6;
 
-/// How presses are carried out on a bench.
+/// How presses are carried out on a test setup.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PressSettings {
-    /// Where gel and indenter stand.
+    /// Poses of gel and indenter.
     pub placement: Placement,
     /// Time from one pose to the next, s: 0.004 to 0.02.
     pub servo_period_s: f64,
     /// Height above the gel at which the indenter travels, mm.
     pub travel_height_mm: f64,
-    /// Speed above the gel, at its highest, mm/s.
+    /// Highest speed above the gel, mm/s.
     pub travel_speed_mm_per_s: f64,
-    /// Speed of turning above the gel, at its highest, rad/s.
+    /// Highest speed of rotation above the gel, rad/s.
     pub turn_speed_rad_per_s: f64,
-    /// Height above the gel at which the slow approach begins, if the protocol's clearance is no larger, mm.
+    /// Height above the gel at which the slow approach begins, mm, unless the protocol's clearance
+    /// is larger.
     pub approach_height_mm: f64,
     /// Speed of the approach, mm/s.
     pub approach_speed_mm_per_s: f64,
-    /// How far below the described surface first touch is looked for, mm.
+    /// How far below the described surface the first touch is searched, mm.
     pub search_mm: f64,
-    /// Mean force along the press that is first touch, N.
+    /// Mean force along the press direction that counts as first touch, N.
     pub touch_force_n: f64,
     /// Time over which that mean is taken, s.
     pub touch_window_s: f64,
     /// Time over which the force without load is averaged before each press, s.
     pub tare_s: f64,
-    /// Largest force that may count as no load, N.
+    /// Largest force that may count as zero load, N.
     pub largest_tare_n: f64,
     /// The supervisor's limits.
     pub limits: Limits,
@@ -54,36 +55,38 @@ pub struct PressSettings {
     pub robot_silence_s: f64,
     /// Longest silence of the tactile sensor, s.
     pub tactile_silence_s: f64,
-    /// Longest time between two tactile frames that is no gap, s.
+    /// Longest time between two tactile frames that does not count as a gap, s.
     pub frame_gap_s: f64,
-    /// Longest time between two of the robot's reports that is no gap, s.
+    /// Longest time between two of the robot's reports that does not count as a gap, s.
     pub report_gap_s: f64,
-    /// Readings of the force sensor that may be lost in a row without a stop.
+    /// Most readings of the force sensor that may be lost in a row without a stop.
     pub tolerated_loss: u32,
-    /// How to go back after a stop.
+    /// How to move back after a stop.
     pub retreat: Retreat,
-    /// How long the barometers are left alone to convert, µs.
+    /// Time in which the barometers convert and are not read, µs.
     pub conversion_us: u32,
-    /// Where the devices are; an emulated bench has its own.
+    /// Where the devices are. An emulated setup has its own devices.
     pub devices: Option<Devices>,
 }
 
-/// Where the devices of a bench are.
+/// Where the devices of a test setup are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Devices {
-    /// Name or address of the xArm's controller.
+    /// Name or network address of the xArm's controller.
     pub robot: String,
-    /// Name or address of the Net F/T box.
+    /// Name or network address of the Net F/T box.
     pub force: String,
-    /// Where the tactile sensor is: its I²C bus, such as /dev/i2c-1; with `line`, a serial port such as /dev/ttyACM0, or `udp:0.0.0.0:9000` for
-    /// datagrams.
+    /// Where the tactile sensor is: its I²C bus, such as /dev/i2c-1; with `line`, a serial port
+    /// such as /dev/ttyACM0, or `udp:0.0.0.0:9000` for datagrams.
     pub tactile: String,
-    /// The file that says how frames stand on a serial line or in datagrams (TOML), from the folder where the program runs.
+    /// The TOML file that describes frames on a serial line or in datagrams, relative to the folder
+    /// in which the program runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub line: Option<std::path::PathBuf>,
-    /// The tool centre point that is set in the robot's controller, in the flange's frame, mm: placement and limits count from there, so a
-    /// controller with another one is refused. Default: the flange itself.
+    /// The tool centre point that is set in the robot's controller, in the flange's frame, mm.
+    /// Placement and limits refer to it, so a controller with another one is refused. Default: the
+    /// flange itself.
     #[serde(default)]
     pub tcp_offset_mm: DVec3,
 }
@@ -101,7 +104,7 @@ impl PressSettings {
         }
     }
 
-    /// The first field that makes no sense: its name, what is wrong, and what to do.
+    /// The first field that is not valid: its name, what is wrong, and what to do.
     pub(crate) fn problem(&self) -> Option<(&'static str, String, String)> {
         for (field, value, most) in [
             ("travel_height_mm", self.travel_height_mm, MOST_MM),
@@ -139,7 +142,7 @@ impl PressSettings {
             let is_near = pose.position_mm.abs().max_element() <= FARTHEST_MM;
             if !is_near || pose.position_mm.is_nan() {
                 let problem = format!("is at {} mm", pose.position_mm);
-                return Some((field, problem, format!("give places within {FARTHEST_MM} mm")));
+                return Some((field, problem, format!("give positions within {FARTHEST_MM} mm")));
             }
             if !is_unit(pose.rotation.length()) {
                 let problem = "has no unit quaternion".to_owned();
@@ -153,7 +156,8 @@ impl PressSettings {
         None
     }
 
-    /// What the supervisor is set up with for a press whose indenter touches the gel with the tool at `surface_mm`, in the base's frame.
+    /// The supervisor's setup for a press. `surface_mm` is the tool's position at which its
+    /// indenter touches the gel, in the base frame.
     pub(crate) fn setup(&self, surface_mm: DVec3) -> Setup {
         Setup {
             limits: self.limits,

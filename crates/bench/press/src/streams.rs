@@ -1,4 +1,4 @@
-//! Hears all devices.
+//! Listens to all devices.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,9 +13,9 @@ use twintac_source::TactileSource;
 
 use crate::PressError;
 
-/// How long a thread waits before it looks whether it is to end.
+/// How long a thread waits before it checks whether it must end.
 const WAIT: Duration = Duration::from_millis(50);
-/// Rest after a frame that failed: a bus that fails at once would keep a core busy.
+/// Pause after a frame that failed. Without it a bus that fails at once would keep one core busy.
 const AFTER_FAILURE: Duration = Duration::from_millis(1);
 
 /// A device that streams.
@@ -39,16 +39,17 @@ impl std::fmt::Display for Source {
     }
 }
 
-/// What a device said, and when it arrived.
+/// A message of a device, and its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heard {
-    /// Time on the bench's clock, s; of a tactile frame: when its taxels were triggered.
+    /// Time on the bench clock, s: the time of arrival; for a tactile frame the time at which its
+    /// taxels were triggered.
     pub bench_s: f64,
-    /// What.
+    /// The content.
     pub event: StreamEvent,
 }
 
-/// What a device said.
+/// The content of a message of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StreamEvent {
     /// All taxels were read.
@@ -62,21 +63,21 @@ pub enum StreamEvent {
     Wrench(WrenchSample),
     /// The robot reported.
     Robot {
-        /// Where its tool is.
+        /// Pose of its tool.
         pose: TcpPose,
         /// Whether it is in error, or stopped.
         in_error: bool,
     },
     /// A stream has ended.
     Failed {
-        /// Whose.
+        /// The device.
         source: Source,
         /// Why.
         problem: String,
     },
 }
 
-/// Threads that hear a device each. They end when this is dropped.
+/// Threads that listen to one device each. They end when this value is dropped.
 #[derive(Debug)]
 pub struct Streams {
     clock: BenchClock,
@@ -86,7 +87,7 @@ pub struct Streams {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// What a thread has.
+/// The data of a thread.
 struct Ear {
     clock: BenchClock,
     sender: Sender<Heard>,
@@ -94,7 +95,7 @@ struct Ear {
 }
 
 impl Streams {
-    /// Hears nothing yet.
+    /// Streams without a device.
     #[must_use]
     pub fn new(clock: BenchClock) -> Self {
         let (sender, receiver) = channel();
@@ -107,16 +108,16 @@ impl Streams {
         }
     }
 
-    /// The bench's clock.
+    /// The bench clock.
     #[must_use]
     pub fn clock(&self) -> BenchClock {
         self.clock
     }
 
-    /// Hears a force/torque sensor, whose samples are stamped on this bench's clock.
+    /// Listens to a force/torque sensor. Its samples must be stamped on this bench clock.
     ///
     /// # Errors
-    /// No thread.
+    /// The thread cannot be started.
     pub fn hear_force(&mut self, mut source: impl WrenchSource + Send + 'static) -> Result<(), PressError> {
         self.start("the force sensor", move |ear| {
             while ear.goes_on() {
@@ -129,10 +130,10 @@ impl Streams {
         })
     }
 
-    /// Hears a robot's reports.
+    /// Listens to a robot's reports.
     ///
     /// # Errors
-    /// No thread.
+    /// The thread cannot be started.
     pub fn hear_robot<W: Wire + Send + 'static>(
         &mut self,
         mut reader: ReportReader<W>,
@@ -146,7 +147,8 @@ impl Streams {
                             (is_ready(&report), report.known_mode() == Some(Mode::Servo));
                         was_ready |= is_ready;
                         has_followed |= follows;
-                        // It was ready once and is no more, or somebody else changed its mode.
+                        // It was ready before and is not any more, or somebody else changed its
+                        // mode.
                         let in_error = was_ready && !is_ready || has_followed && !follows;
                         let pose = report.pose;
                         ear.say(ear.clock.now_s(), StreamEvent::Robot { pose, in_error });
@@ -158,10 +160,11 @@ impl Streams {
         })
     }
 
-    /// Hears a tactile sensor, whose frames must be stamped on this bench's clock ([`BenchClock::now_us`]).
+    /// Listens to a tactile sensor. Its frames must be stamped on this bench clock
+    /// ([`BenchClock::now_us`]).
     ///
     /// # Errors
-    /// No thread.
+    /// The thread cannot be started.
     pub fn hear_taxels(&mut self, mut source: impl TactileSource + 'static) -> Result<(), PressError> {
         self.start("the tactile sensor", move |ear| {
             while ear.goes_on() {
@@ -179,12 +182,13 @@ impl Streams {
         })
     }
 
-    /// What was heard since the last call, in the order of arrival.
+    /// The messages since the last call, in the order of arrival.
     pub fn heard(&self) -> impl Iterator<Item = Heard> {
         self.receiver.try_iter()
     }
 
-    /// Passes over what was heard since the last call; why nothing may be pressed, if something in it says so.
+    /// Discards the messages since the last call. Returns a cause if one of them means that nothing
+    /// may be pressed.
     pub(crate) fn trouble(&self) -> Option<Cause> {
         let mut trouble = None;
         for heard in self.heard() {
@@ -224,7 +228,7 @@ impl Drop for Streams {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         for thread in self.threads.drain(..) {
-            let _ = thread.join(); // one that panicked has said so
+            let _ = thread.join(); // a thread that panicked has reported it
         }
     }
 }
@@ -235,7 +239,7 @@ impl Ear {
     }
 
     fn say(&self, bench_s: f64, event: StreamEvent) {
-        // Nobody hears it any more when the bench is gone.
+        // Fails only when the receiver is dropped.
         let _ = self.sender.send(Heard { bench_s, event });
     }
 
@@ -245,7 +249,7 @@ impl Ear {
     }
 }
 
-/// Development reports have no error's code; in an error, the state is another.
+/// Development reports have no error code. In an error their state is another one.
 fn is_ready(report: &Report) -> bool {
     let is_moving = matches!(report.state, MotionState::Ready | MotionState::Moving);
     is_moving && report.status.is_none_or(|status| status.error == 0)

@@ -1,8 +1,8 @@
-//! First touch.
+//! Detection of the first touch.
 
 use std::collections::VecDeque;
 
-/// The mean force of the latest readings, along the press.
+/// The mean force along the press direction over the latest readings.
 #[derive(Clone, Debug)]
 pub(crate) struct Touch {
     window_s: f64,
@@ -11,7 +11,7 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    /// Fewest readings that a mean is made of: noise alone is no touch.
+    /// Fewest readings of a mean, so that noise alone is not taken for a touch.
     const FEWEST: usize = 3;
 
     pub(crate) fn new(window_s: f64, force_n: f64) -> Self {

@@ -1,4 +1,5 @@
-//! Runs on the emulated bench, in real time and on its sockets: what is recorded, and each fault.
+//! Runs on the emulated devices, in real time and over their sockets: what is recorded, and the
+//! effect of each fault.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // also in the helpers of tests; figures for people to read
 
@@ -32,10 +33,10 @@ const LIMITS: SensorLimits = SensorLimits {
     depth_mm: 4.0,
 };
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
 
-/// Silences are as long as that, and whatever is lost is put up with.
+/// Allowed silences are as long as that, and any loss is tolerated.
 fn press_settings() -> PressSettings {
     let settings = PressSettings::parse("bench.toml", include_str!("bench.toml")).unwrap();
     PressSettings {
@@ -111,7 +112,7 @@ fn bench() -> (EmulatedBench, Bench<Client<TcpStream>>) {
     streams.hear_robot(ReportReader::new(reports, port)).unwrap();
     let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
     let free = move |_: &mut _, delay: &mut LabClock| {
-        // A bus that stays hung fails the next frame as well.
+        // A bus that stays hung also fails the next frame.
         let _ = reset_switch(&mut reset, delay);
         let _ = free_bus(&mut scl, &mut sda, delay);
     };
@@ -149,7 +150,7 @@ fn run(bench: &mut Bench<Client<TcpStream>>, count: usize, out: &Path) -> RunSum
         .unwrap()
 }
 
-/// The only whole log in a folder, with its gaps and the notes in it.
+/// The only complete log in a folder: its gaps and its notes.
 fn log(out: &Path) -> (Vec<Event>, u64) {
     let mut names: Vec<_> = std::fs::read_dir(out)
         .unwrap()
@@ -227,7 +228,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
         "the first try is kept"
     );
 
-    // A third run has nothing left to do, and other presses do not fit the folder.
+    // A third run has nothing left to do, and other presses do not match the folder.
     assert_eq!(run(&mut bench, 2, folder.path()).frames, 0);
     let other = runner().run(
         &mut bench,
@@ -264,13 +265,13 @@ fn a_dry_run_ends_where_the_presses_do() {
     assert!(last.distance(DVec3::new(201.0, 0.5, 103.0)) < 0.1, "{last}");
 }
 
-/// What a fault leads to.
+/// The effect of a fault.
 enum End {
     /// The press is done, and the log has gaps of this stream.
     Gap(Stream),
-    /// The press is done, and the log notes that a taxel gives nothing.
+    /// The press is done, and the log notes that a taxel gives no reading.
     Note(&'static str),
-    /// The press is done. What is missing, if anything, is marked, as it is in every log.
+    /// The press is done. If anything is missing, it is marked, as in every log.
     Done,
     /// The run stops, with these words in its cause.
     Stop(&'static str),
@@ -278,7 +279,7 @@ enum End {
     Silence(&'static str),
 }
 
-/// One press each, held long enough for any silence to show, and a fault while it is under way.
+/// One press for each fault, held long enough for any silence to show.
 #[test]
 fn each_fault_is_marked_or_stops_the_run() {
     let some_time = Some(Moment::TimeS(0.1));
@@ -300,7 +301,8 @@ fn each_fault_is_marked_or_stops_the_run() {
         (stuck_taxel, None, End::Gap(Stream::Tactile)),
         (short, None, End::Note("taxel 3 is isolated")),
         (slow_bus, None, End::Gap(Stream::Tactile)),
-        // Where in a frame it happens decides what it costs; the mask is written again before each use.
+        // The effect depends on the moment within a frame. The mask is written again before each
+        // use.
         (FaultKind::SwitchBrownOut, None, End::Done),
         (restarted, None, End::Done),
         (endless, None, End::Note("taxel 1 is stuck")),
@@ -318,7 +320,7 @@ fn each_fault_is_marked_or_stops_the_run() {
         (FaultKind::UnansweredRequests, None, End::Silence("the robot")),
         (FaultKind::SaturatedForce, None, End::Stop("saturation")),
     ];
-    // Few at a time: each bench runs in real time.
+    // Only a few at a time, because each setup runs in real time.
     for few in table.chunks(3) {
         std::thread::scope(|scope| {
             for (what, lasts, end) in few {
@@ -328,14 +330,15 @@ fn each_fault_is_marked_or_stops_the_run() {
     }
 }
 
-/// From the beginning of a press to its fault, s.
+/// Time from the beginning of a press to its fault, s.
 const FAULT_AFTER_S: f64 = 0.8;
 /// Longest silence of the device that a fault makes silent, s.
 const SILENCE_S: f64 = 0.8;
-/// How long the gel is held, s: a press takes longer than fault and silence, and on a busy machine longer still.
+/// How long the gel is held, s. A press takes longer than fault and silence together, and even
+/// longer on a busy machine.
 const HOLD_S: f64 = 2.2;
 
-/// The settings for a fault: only the device that is to fall silent is waited for no longer than [`SILENCE_S`].
+/// The settings for a fault. Only the device that falls silent has the short limit [`SILENCE_S`].
 fn settings_for(end: &End) -> PressSettings {
     let mut settings = press_settings();
     match end {
@@ -351,7 +354,7 @@ fn check(what: FaultKind, lasts: Option<Moment>, end: &End) {
     let folder = TempDir::new().unwrap();
     let (devices, mut bench) = bench();
     if what == FaultKind::UnansweredRequests {
-        bench.arm.set_answer_within(Duration::from_secs(2)); // nor does it answer that it has stopped
+        bench.arm.set_answer_within(Duration::from_secs(2)); // it does not confirm the stop either
     }
     let mut inject = |_: usize, _: &PressPlan| {
         let begins = Moment::TimeS(devices.workcell().clock().now_s() + FAULT_AFTER_S);
@@ -399,7 +402,7 @@ fn check(what: FaultKind, lasts: Option<Moment>, end: &End) {
     }
 }
 
-/// Someone who never gives the answer that is waited for.
+/// An operator who always gives the same answer.
 struct Nobody {
     answer: Mounting,
     asked: usize,
@@ -432,7 +435,7 @@ fn without_an_indenter_nothing_moves() {
     assert_eq!((refused.stopped, asked), (Some(Cause::Operator), 1));
     let (interrupted, _) = run(Mounting::Waiting, true);
     assert_eq!(interrupted.stopped, Some(Cause::Operator));
-    // What happens meanwhile is heard.
+    // Events that happen meanwhile are heard.
     devices
         .inject(ScheduledFault {
             what: FaultKind::RobotError { code: 31 },
@@ -454,7 +457,7 @@ fn without_an_indenter_nothing_moves() {
 fn an_indenter_that_may_touch_is_not_tared_away() {
     let folder = TempDir::new().unwrap();
     let (_devices, mut bench) = bench();
-    // An earlier run has left it in the gel.
+    // An earlier run has left the indenter in the gel.
     let mut pose = bench.arm.pose().unwrap();
     while pose.position_mm.z > 99.6 {
         pose.position_mm.z -= 0.05;

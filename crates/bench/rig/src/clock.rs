@@ -1,8 +1,8 @@
-//! One clock for the whole bench.
+//! One clock for the whole test setup.
 
 use std::time::Instant;
 
-/// The bench's monotonic clock: seconds since it was started. Copies read the same clock.
+/// The monotonic clock of the test setup: seconds since it was started. Copies read the same clock.
 #[derive(Clone, Copy, Debug)]
 pub struct BenchClock {
     start: Instant,
@@ -29,7 +29,7 @@ impl BenchClock {
         self.start.elapsed().as_micros() as u64 // 584 thousand years
     }
 
-    /// A stamp of now, beside what the source's own clock says.
+    /// A stamp with the present time and `source_s`, the time of the source's own clock.
     #[must_use]
     pub fn stamp(&self, source_s: Option<f64>) -> Stamp {
         Stamp {
@@ -42,9 +42,10 @@ impl BenchClock {
 /// When something was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stamp {
-    /// When it arrived, on the bench's clock, s.
+    /// When it arrived, on the bench clock, s.
     pub bench_s: f64,
-    /// When it was measured, on the source's own clock, s, if the source has one. Its zero and its rate are the source's.
+    /// When it was measured, on the source's own clock, s, if the source has one. That clock has
+    /// its own zero and its own rate.
     pub source_s: Option<f64>,
 }
 

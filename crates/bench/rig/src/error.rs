@@ -1,4 +1,4 @@
-//! What can go wrong on the bench.
+//! Errors of devices and of the test setup.
 
 use std::fmt;
 use std::time::Duration;
@@ -26,7 +26,7 @@ impl fmt::Display for Device {
     }
 }
 
-/// What was expected of the bench and what was found.
+/// What was expected of the test setup and what was found.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RigError {
@@ -45,7 +45,7 @@ pub enum RigError {
     Timeout {
         /// The device.
         device: Device,
-        /// What was asked.
+        /// The request.
         what: String,
         /// How long was waited.
         after: Duration,
@@ -75,7 +75,7 @@ pub enum RigError {
     Robot {
         /// The command.
         command: &'static str,
-        /// Why not.
+        /// Why it does not.
         problem: String,
         /// What to do about it.
         hint: &'static str,
@@ -108,7 +108,7 @@ pub enum RigError {
         /// Unit of both.
         unit: &'static str,
     },
-    /// The supervisor's setup makes no sense.
+    /// The setup of the supervisor is not usable.
     #[error("safety: `{field}` {problem}; {hint}")]
     Setup {
         /// The field.
@@ -121,7 +121,7 @@ pub enum RigError {
     /// A file that people write is wrong.
     #[error(transparent)]
     Description(#[from] ConfigError),
-    /// A file or a device's page lacks something, or has something unusable.
+    /// A file or a device's web page lacks something or has something unusable.
     #[error("{file}: {problem}")]
     File {
         /// The file or the address, with a line where there is one.

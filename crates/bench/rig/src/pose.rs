@@ -1,4 +1,4 @@
-//! Where the robot's tool is.
+//! Poses of the robot's tool.
 
 use glam::{DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize};
 pub struct TcpPose {
     /// Position, mm.
     pub position_mm: DVec3,
-    /// Roll, pitch and yaw, radians: turns about the base's x, then y, then z axis.
+    /// Roll, pitch and yaw, radians: rotations about the x, then the y, then the z axis of the base
+    /// frame.
     pub roll_pitch_yaw_rad: DVec3,
 }
 
 impl TcpPose {
-    /// The pose with a rotation that takes directions from the tool's to the base's frame.
+    /// The pose with a rotation that maps directions from the tool's frame to the base frame.
     #[must_use]
     pub fn new(position_mm: DVec3, base_from_tool: DQuat) -> Self {
         let (yaw, pitch, roll) = base_from_tool.to_euler(EulerRot::ZYX);
@@ -23,7 +24,7 @@ impl TcpPose {
         }
     }
 
-    /// The rotation that takes directions from the tool's to the base's frame.
+    /// The rotation that maps directions from the tool's frame to the base frame.
     #[must_use]
     pub fn base_from_tool(&self) -> DQuat {
         let angles = self.roll_pitch_yaw_rad;
@@ -36,11 +37,11 @@ impl TcpPose {
         self.position_mm.distance(other.position_mm)
     }
 
-    /// Angle of the turn that takes one orientation to the other, from 0 to π, radians.
+    /// Angle of the rotation from one orientation to the other, from 0 to π, radians.
     #[must_use]
     pub fn turn_rad(&self, other: &Self) -> f64 {
         let between = self.base_from_tool().inverse() * other.base_from_tool();
-        // By the tangent, which is exact near zero, where the cosine's arc is not.
+        // The arc tangent is accurate near zero. The arc cosine is not.
         2.0 * between.xyz().length().atan2(between.w.abs())
     }
 

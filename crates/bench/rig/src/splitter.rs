@@ -2,15 +2,17 @@
 
 use crate::{Device, RigError};
 
-/// Cuts frames that say their own size out of a stream, however the stream's reads fall on them.
+/// Cuts a byte stream into frames that state their own size, wherever the reads of the stream begin
+/// and end.
 ///
-/// It never holds more than one frame, nor a frame larger than its bound. A stream without marks cannot be found again
-/// once a size is wrong: the splitter then reports the same error for ever, and the connection has to be made anew.
+/// It never holds more than one frame, and never a frame larger than its bound. In a stream without
+/// frame marks the next frame cannot be found after a wrong size. From then on the splitter reports
+/// the same error, and the connection must be opened anew.
 #[derive(Clone, Debug)]
 pub struct Splitter {
     device: Device,
     header_bytes: usize,
-    /// Size of the whole frame, from its header.
+    /// Size of the whole frame, read from its header.
     frame_bytes: fn(&[u8]) -> usize,
     smallest: usize,
     largest: usize,
@@ -36,10 +38,11 @@ impl Splitter {
         }
     }
 
-    /// Takes bytes off the front until a frame is whole; `None` when it needs more bytes. To be called until then.
+    /// Takes bytes from the front until a frame is complete. Returns `None` if more bytes are
+    /// needed. Call it until it returns `None`.
     ///
     /// # Errors
-    /// A frame that says to be smaller or larger than any can be.
+    /// A frame whose stated size is smaller or larger than any valid frame.
     pub fn take(&mut self, bytes: &mut &[u8]) -> Result<Option<Vec<u8>>, RigError> {
         self.fill(self.header_bytes, bytes);
         if self.held.len() < self.header_bytes {
@@ -59,7 +62,7 @@ impl Splitter {
         Ok(Some(frame))
     }
 
-    /// Bytes of memory that the stream holds on to.
+    /// Bytes of memory that the splitter holds.
     #[must_use]
     pub fn capacity(&self) -> usize {
         self.held.capacity()

@@ -1,6 +1,6 @@
-//! Names of units that force sensors use.
+//! Units of force and torque, as force sensors name them.
 
-/// Newtons in a unit of force, by the name that sensors and calibration files have for it.
+/// Newtons per unit of force, by the name of the unit in sensors and calibration files.
 pub(crate) fn newtons(unit: &str) -> Option<f64> {
     Some(match plain(unit).as_str() {
         "n" | "newton" | "newtons" => 1.0,
@@ -13,7 +13,7 @@ pub(crate) fn newtons(unit: &str) -> Option<f64> {
     })
 }
 
-/// Newton millimetres in a unit of torque, by the name that sensors and calibration files have for it.
+/// Newton millimetres per unit of torque, by the name of the unit in sensors and calibration files.
 pub(crate) fn newton_millimetres(unit: &str) -> Option<f64> {
     Some(match plain(unit).as_str() {
         "nm" | "newtonmeter" | "newtonmeters" => 1000.0,
@@ -26,12 +26,13 @@ pub(crate) fn newton_millimetres(unit: &str) -> Option<f64> {
     })
 }
 
-/// One pound-force, N, and one kilogram-force, N: exact by definition (BIPM, The International System of Units).
+/// One pound-force and, below, one kilogram-force, N. Both are exact by definition (BIPM, The
+/// International System of Units).
 const POUND_N: f64 = 4.448_221_615_260_5;
 const KILOGRAM_N: f64 = 9.806_65;
 const INCH_MM: f64 = 25.4;
 
-/// The letters alone, in lower case: `N-m`, `N·m` and `Nm` are one.
+/// The letters alone, in lower case: `N-m`, `N·m` and `Nm` are the same unit.
 fn plain(unit: &str) -> String {
     unit.chars()
         .filter(|c| c.is_ascii_alphabetic())

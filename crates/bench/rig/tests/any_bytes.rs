@@ -1,4 +1,5 @@
-//! Whatever bytes come: decoders answer or refuse, and never panic, nor hold more memory than their bounds.
+//! For any bytes: decoders return a value or an error. They never panic, and never hold more memory
+//! than their bounds.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -9,7 +10,7 @@ use twintac_rig::{AnalogCalibration, BenchClock, Replay, Splitter, Wrench, Wrenc
 
 const PORTS: [ReportPort; 3] = [ReportPort::Normal, ReportPort::Rich, ReportPort::Development];
 
-/// Frames that are right, to be broken.
+/// Valid frames, which the tests damage.
 fn frames() -> Vec<Vec<u8>> {
     let report = Report::decode(
         ReportPort::Development,
@@ -43,7 +44,7 @@ fn frames() -> Vec<Vec<u8>> {
     frames
 }
 
-/// Bytes at random, or a right frame with some of its bytes changed, cut off or doubled.
+/// Random bytes, or a valid frame with some bytes changed, cut off or duplicated.
 fn bytes() -> impl Strategy<Value = Vec<u8>> {
     let broken = (
         prop::sample::select(frames()),
@@ -74,7 +75,7 @@ const TOML: &str = "range_v = 10.0\nbias_v = [0, 0, 0, 0, 0, 0.5]\nmatrix = [[1,
     [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]\n";
 const CSV: &str = "time_s,fx_n,fy_n,fz_n,tx_n_mm,ty_n_mm,tz_n_mm\n0.0,1,2,3,4,5,6\n0.1,-1,-2,-3,4e2,5,6\n";
 
-/// A right text with some of its pieces replaced by others, or cut off.
+/// A valid text with some pieces replaced by others, or cut off.
 fn broken(right: &'static str) -> impl Strategy<Value = String> {
     let piece = prop_oneof![
         "\\PC{0,4}",

@@ -1,4 +1,5 @@
-//! A force sensor with analog gauges, read through a measuring card, as a program of one's own does it.
+//! A force sensor with analog gauges, read through a measuring card, as a user's own program does
+//! it.
 
 use std::time::Duration;
 

@@ -1,13 +1,13 @@
-//! What can go wrong between a sensor and its frames.
+//! Errors between a sensor and its frames.
 
 use twintac_config::ConfigError;
 use twintac_log::LogError;
 
-/// What was expected of a sensor or a wire, and what was found.
+/// What was expected of a sensor or a connection, and what was found.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SourceError {
-    /// The description is of a sensor that is not read this way.
+    /// The description is of a sensor that cannot be read by this driver.
     #[error("sensor {sensor}: {problem}")]
     Sensor {
         /// Name of the description.
@@ -25,7 +25,7 @@ pub enum SourceError {
         /// Pressures of a frame.
         n_pressures: usize,
     },
-    /// The wire could not be opened.
+    /// The bus, port or address could not be opened.
     #[error("cannot open {wire}: {problem}")]
     Open {
         /// The bus, port or address as the user named it.
@@ -33,57 +33,59 @@ pub enum SourceError {
         /// What the operating system says.
         problem: String,
     },
-    /// The wire gives no frame.
-    #[error("no frame comes from the sensor: {problem}")]
+    /// The bus or line gives no frame.
+    #[error("the sensor sends no frames: {problem}")]
     Wire {
         /// What the driver or the operating system says.
         problem: String,
     },
-    /// Nobody has confirmed what counts stand for.
-    #[error("{found}; counts are no pressure until somebody who knows the parts confirms it: {advice}")]
+    /// Nobody has confirmed the scale of the counts.
+    #[error(
+        "{found}; somebody who knows the parts must confirm the scale before counts are read as pressures: {advice}"
+    )]
     ScaleUnconfirmed {
-        /// What free air says.
+        /// The hint from free air.
         found: String,
         /// What to type or to write.
         advice: String,
     },
-    /// The confirmed scale makes no free air of what most taxels read.
+    /// With the confirmed scale most taxels do not read free air.
     #[error(
-        "with {} counts per Pa {n_free} of {n_read} taxels read free air: {found}; lift what touches the sensor, correct the scale, or say how high the place is (`--altitude-m`)",
+        "with {} counts per Pa {n_free} of {n_read} taxels read free air: {found}; lift what touches the sensor, correct the scale, or give the altitude (`--altitude-m`)",
         1.0 / pa_per_count
     )]
     ScaleContradicted {
         /// The confirmed scale, Pa per count.
         pa_per_count: f32,
-        /// Taxels that read free air.
+        /// Number of taxels that read free air.
         n_free: usize,
-        /// Taxels that read anything.
+        /// Number of taxels that gave a reading.
         n_read: usize,
-        /// What the taxels read, and with which scale it would be free air.
+        /// What the taxels read, and the scale with which it would be free air.
         found: String,
     },
-    /// Somebody says what counts stand for, of chips that say so themselves.
-    #[error("the sensor's chips say themselves what they count; leave the scale out (`--scale`)")]
+    /// A scale was given for chips that know their own scale.
+    #[error("the scale of the sensor's chips is known; leave it out (`--scale`)")]
     NothingToScale,
-    /// Chips that know their scale do not read free air.
+    /// Chips that know their own scale do not read free air.
     #[error(
-        "{n_free} of {n_read} taxels read free air: {notes}; lift what touches the sensor, or say how high the place is (`--altitude-m`)"
+        "{n_free} of {n_read} taxels read free air: {notes}; lift what touches the sensor, or give the altitude (`--altitude-m`)"
     )]
     NotFreeAir {
-        /// Taxels that read free air.
+        /// Number of taxels that read free air.
         n_free: usize,
-        /// Taxels that read anything.
+        /// Number of taxels that gave a reading.
         n_read: usize,
-        /// What is odd, a sentence each.
+        /// Observations, one sentence each.
         notes: String,
     },
-    /// How the line is written is not as described.
+    /// The description of the line is wrong.
     #[error(transparent)]
     Line(#[from] ConfigError),
     /// A log could not be played.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The reading thread could not be started, or it died.
+    /// The reading thread could not be started, or has ended unexpectedly.
     #[error("the reading thread: {problem}")]
     Thread {
         /// What is known of it.

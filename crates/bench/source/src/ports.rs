@@ -1,4 +1,4 @@
-//! What is plugged in, and what it sounds like.
+//! Lists the ports of a computer, and reports what arrives on one.
 
 use std::time::{Duration, Instant};
 
@@ -7,31 +7,31 @@ use serialport::SerialPortType;
 use crate::line::Wire;
 use crate::{SerialLine, SourceError};
 
-/// A port that a sensor may be on.
+/// A port to which a sensor may be connected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Port {
-    /// What to open: `/dev/ttyACM0`, `COM3`, `/dev/i2c-1`.
+    /// The path to open: `/dev/ttyACM0`, `COM3`, `/dev/i2c-1`.
     pub path: String,
-    /// What is known of it, for people to read.
+    /// A description for people.
     pub what: String,
-    /// Whether it is a serial port, rather than a bus.
+    /// Whether it is a serial port and not an I²C bus.
     pub is_serial: bool,
 }
 
-/// What came over a port.
+/// What arrived on a port.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sound {
-    /// Bytes a second.
+    /// Bytes per second.
     pub bytes_per_s: f64,
-    /// Whole lines a second.
+    /// Whole lines per second.
     pub lines_per_s: f64,
-    /// How many numbers most lines have, and between what; none if it is no text.
+    /// How many numbers most lines have, and what separates them. `None` if it is no text.
     pub numbers: Option<(usize, &'static str)>,
-    /// A line, as it came.
+    /// One of the lines.
     pub example: Option<String>,
 }
 
-/// The ports of this computer: serial ones, and the buses of Linux.
+/// The ports of this computer: serial ports, and I²C buses on Linux.
 #[must_use]
 pub fn ports() -> Vec<Port> {
     let serial = serialport::available_ports().unwrap_or_default();
@@ -92,7 +92,7 @@ fn buses() -> Vec<Port> {
     Vec::new()
 }
 
-/// Listens to a serial port at so many bits a second.
+/// Listens to a serial port at `baud` bits per second.
 ///
 /// # Errors
 /// A port that cannot be opened or read.
@@ -112,12 +112,12 @@ pub fn listen(path: &str, baud: u32, for_how_long: Duration) -> Result<Sound, So
     Ok(sound(&heard, begun.elapsed()))
 }
 
-/// What bytes sound like that came in so long.
+/// What bytes look like that arrived within a time.
 #[must_use]
 pub fn sound(heard: &[u8], in_how_long: Duration) -> Sound {
     let seconds = in_how_long.as_secs_f64().max(1e-3);
     let pieces: Vec<&[u8]> = heard.split(|byte| *byte == b'\n').collect();
-    // The first and the last may be torn.
+    // The first and the last piece may be incomplete.
     let whole = pieces.get(1..pieces.len().saturating_sub(1)).unwrap_or_default();
     let lines: Vec<&str> = whole
         .iter()
@@ -142,7 +142,7 @@ pub fn sound(heard: &[u8], in_how_long: Duration) -> Sound {
     }
 }
 
-/// How many numbers a line has, and between what.
+/// How many numbers a line has, and what separates them.
 fn numbers(line: &str) -> Option<(usize, &'static str)> {
     if line.starts_with('{') {
         return Some((line.matches(':').count(), "JSON"));

@@ -1,4 +1,4 @@
-//! Frames of a log, once more.
+//! Plays the frames of a log again.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -7,18 +7,19 @@ use twintac_log::{Body, Description, LogReader, TactileFrame};
 
 use crate::{Reading, SourceError, TactileSource};
 
-/// Plays the frames of a log at the pace at which they were recorded, or at once.
+/// Plays the frames of a log, at the pace of the recording or without waiting.
 #[derive(Debug)]
 pub struct ReplaySource {
     description: Description,
     frames: Vec<(f64, TactileFrame)>,
     played: usize,
-    /// When it began, if at its own pace.
+    /// When playing began. `None` if it does not wait.
     begun: Option<Instant>,
 }
 
 impl ReplaySource {
-    /// Reads a log (MCAP). At its own pace, or as fast as it is asked.
+    /// Reads a log (MCAP). Plays it at the pace of the recording if `at_its_pace`, else as fast as
+    /// frames are requested.
     ///
     /// # Errors
     /// A log that cannot be read, or has no frames.
@@ -46,7 +47,7 @@ impl ReplaySource {
         })
     }
 
-    /// What the log says of its sensor.
+    /// The description in the log.
     #[must_use]
     pub fn description(&self) -> &Description {
         &self.description

@@ -1,4 +1,4 @@
-//! What gives frames.
+//! The trait of sources of frames.
 
 use std::time::Duration;
 
@@ -6,26 +6,28 @@ use twintac_log::TactileFrame;
 
 use crate::SourceError;
 
-/// A frame as it is handed out.
+/// A frame as a source returns it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Its number, of all that were asked for or sent: numbers that are missing were missed, or lost on the way.
+    /// The number of the frame, counting all that were requested or sent. A number that is missing
+    /// was missed, or lost on the way.
     pub sequence: u64,
-    /// When the taxels were triggered, s of the bench's clock.
+    /// When the taxels were triggered, s of the bench clock.
     pub bench_s: f64,
-    /// What they gave.
+    /// The readings of the taxels.
     pub frame: TactileFrame,
 }
 
 /// Gives frames of a tactile sensor, one after the other.
 pub trait TactileSource: Send {
-    /// The next frame, or `None` if none comes for so long. A source that is asked for each frame, such as a bus, takes as long as it takes.
+    /// The next frame, or `None` if none comes within `patience`. A source that must request each
+    /// frame, such as a bus, takes as long as that takes.
     ///
     /// # Errors
-    /// What stops all taxels. The next call begins anew.
+    /// An error that affects all taxels. The next call starts again.
     fn next_frame(&mut self, patience: Duration) -> Result<Option<Reading>, SourceError>;
 
-    /// What was on the wire so far besides frames, a sentence each; empty if all was well.
+    /// What was on the connection so far besides frames, one sentence each. Empty if all was well.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
@@ -35,10 +37,10 @@ pub trait TactileSource: Send {
         false
     }
 
-    /// Lets go of the wire.
+    /// Releases the connection.
     ///
     /// # Errors
-    /// What the wire says.
+    /// An error of the connection.
     fn stop(&mut self) -> Result<(), SourceError> {
         Ok(())
     }

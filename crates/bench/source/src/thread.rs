@@ -1,4 +1,4 @@
-//! Frames from a thread of their own.
+//! Reads frames on a separate thread.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
@@ -8,17 +8,18 @@ use std::time::{Duration, Instant};
 
 use crate::{Reading, SourceError, TactileSource};
 
-/// Failures in a row after which a sensor is given up, and the time to rest after each: 2 s.
+/// Failures in a row after which a sensor is given up, with the rest time after each: 2 s in all.
 const MOST_FAILURES: u32 = 40;
 const REST: Duration = Duration::from_millis(50);
 
-/// How long a sensor may be silent: longer than it may fail, so that a failure is told with its cause.
+/// Longest silence of a sensor. It is longer than the time of the failures, so that a failure is
+/// reported with its cause.
 const SILENCE: Duration = Duration::from_secs(3);
 
-/// How long the thread may take to end.
+/// Longest time that the thread may take to end.
 const LEAVE: Duration = Duration::from_secs(1);
 
-/// A thread that reads a sensor as fast as it goes, and never waits for whom it reads for.
+/// A thread that reads a sensor as fast as possible, and never waits for its user.
 #[derive(Debug)]
 pub struct FrameSource {
     readings: Receiver<Reading>,
@@ -28,18 +29,18 @@ pub struct FrameSource {
     heard: Instant,
 }
 
-/// What became of the frames so far.
+/// Counts of the frames so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Frames that were read.
     pub read: u64,
-    /// Of these, frames that found no room and are lost.
+    /// Of these, frames that found no room in the channel and are lost.
     pub missed: u64,
-    /// Times that the bus gave no frame.
+    /// How many times the source gave an error and no frame.
     pub failed: u64,
-    /// Why, the last time.
+    /// The latest of these errors.
     pub last_failure: Option<String>,
-    /// What was on the wire besides frames, a sentence each.
+    /// What was on the connection besides frames, one sentence each.
     pub remarks: Vec<String>,
 }
 
@@ -54,13 +55,14 @@ struct Shared {
 }
 
 impl FrameSource {
-    /// Frames that may wait, where nothing else is known: two seconds of a sensor.
+    /// Usual number of frames that may wait in the channel: two seconds of a sensor.
     pub const USUAL_CAPACITY: usize = 256;
 
-    /// Starts to read. `capacity` frames may wait to be taken; those that come while so many do are counted as missed.
+    /// Starts to read. `capacity` frames may wait to be taken. A frame that comes while the channel
+    /// is full is counted as missed.
     ///
     /// # Errors
-    /// [`SourceError::Thread`]: there is no thread.
+    /// [`SourceError::Thread`]: the thread could not be started.
     pub fn start(source: impl TactileSource + 'static, capacity: usize) -> Result<Self, SourceError> {
         let (sender, readings) = sync_channel(capacity);
         let shared = Arc::new(Shared::default());
@@ -79,10 +81,11 @@ impl FrameSource {
         })
     }
 
-    /// The next frame, or `None` if none comes for so long.
+    /// The next frame, or `None` if none comes within `timeout`.
     ///
     /// # Errors
-    /// [`SourceError::Wire`]: the sensor was given up, having failed for 2 s on end or been silent for 3 s. [`SourceError::Thread`].
+    /// [`SourceError::Wire`]: the sensor was given up, after failures for 2 s or silence for 3 s.
+    /// [`SourceError::Thread`].
     pub fn next(&mut self, timeout: Duration) -> Result<Option<Reading>, SourceError> {
         match self.readings.recv_timeout(timeout) {
             Ok(reading) => {
@@ -109,7 +112,7 @@ impl FrameSource {
         }
     }
 
-    /// What became of the frames so far.
+    /// Counts of the frames so far.
     #[must_use]
     pub fn tally(&self) -> Tally {
         let shared = &self.shared;
@@ -128,7 +131,8 @@ impl FrameSource {
     }
 }
 
-/// Ends the thread, after the frame that it is reading. On a bus that hangs it is left to itself.
+/// Ends the thread after the frame that it is reading. If the bus hangs, the thread is not waited
+/// for.
 impl Drop for FrameSource {
     fn drop(&mut self) {
         self.shared.is_over.store(true, Ordering::Relaxed);
@@ -141,7 +145,7 @@ impl Drop for FrameSource {
         if heard == Err(RecvTimeoutError::Disconnected)
             && let Some(thread) = self.thread.take()
         {
-            let _ = thread.join(); // nobody is left to hear how it went
+            let _ = thread.join(); // nobody can be told the result
         }
     }
 }

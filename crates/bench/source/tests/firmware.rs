@@ -1,4 +1,5 @@
-//! An emulated microcontroller that runs the firmware, read over a pseudo-terminal, with faults on its bus and bytes lost on the line.
+//! An emulated microcontroller runs the firmware and is read over a pseudo-terminal, with faults on
+//! its bus and bytes lost on the line.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
@@ -17,11 +18,11 @@ use twintac_log::TaxelState;
 use twintac_microcontroller::{Microcontroller, N_TAXELS, Setup};
 use twintac_source::{LineSource, Reading, SerialLine, TactileSource};
 
-/// How long the board runs, s of its clock, which does not wait.
+/// How long the board runs, s of its clock, which is virtual.
 const RUN_S: f64 = 4.0;
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What the board sent, and which of it the line lost.
+/// What the board sent, and what the line lost of it.
 struct Sent {
     reports: Vec<Report<N_TAXELS>>,
     lost: Vec<u32>,
@@ -44,7 +45,7 @@ fn setup() -> Setup {
     setup
 }
 
-/// The board in a thread of its own. Of every hundredth frame, ten bytes get lost.
+/// The board, on a separate thread. The line loses ten bytes of every hundredth frame.
 fn run(mut port: TTYPort) -> JoinHandle<Sent> {
     thread::spawn(move || {
         let mut board = Microcontroller::new(LabClock::virtual_time(), Hertz::default(), &setup()).unwrap();
@@ -70,7 +71,7 @@ fn run(mut port: TTYPort) -> JoinHandle<Sent> {
                 }
             }
         }
-        // The port stays open until what was written is read.
+        // The port stays open until what was written has been read.
         thread::sleep(Duration::from_secs(1));
         Sent { reports, lost }
     })
@@ -83,7 +84,7 @@ fn read(line: &str) -> (Vec<Reading>, LineSource, Sent) {
     let description = Description::read(folder.join(line)).unwrap();
     let start = Instant::now();
     let clock = Box::new(move || start.elapsed().as_micros() as u64);
-    // What it sends first waits for the board.
+    // What the computer sends when it opens the port waits until the board runs.
     let port = SerialLine::open(&path, &description).unwrap();
     let mut source = LineSource::new(port, &description, N_TAXELS, clock).unwrap();
     let board = run(board);
@@ -146,7 +147,7 @@ fn frames_are_what_the_firmware_read_and_what_it_could_not_read_is_marked() {
             n_missing > 50 && (1..=3).contains(&n_failed),
             "{n_missing} {n_failed}"
         );
-        // What the line lost is lost, and counted; nothing else is.
+        // Only what the line lost is missing, and it is counted.
         let tally = source.tally();
         let heard: Vec<u64> = readings.iter().map(|reading| reading.sequence).collect();
         assert!(
@@ -158,7 +159,7 @@ fn frames_are_what_the_firmware_read_and_what_it_could_not_read_is_marked() {
         );
         assert_eq!(tally.lost, sent.lost.len() as u64, "{line}: {tally:?}");
         assert_eq!(heard.len() + sent.lost.len(), sent.reports.len(), "{line}");
-        // As many as there should be.
+        // The rate is the expected one.
         let budget_hz = f64::from(Budget::new(&setup().node.sensor, 400_000).rate_hz());
         let found_hz = sent.reports.len() as f64 / RUN_S;
         println!(

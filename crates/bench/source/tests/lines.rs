@@ -1,4 +1,5 @@
-//! A sensor whose microcontroller writes to a serial line, a pseudo-terminal here, or sends datagrams.
+//! A sensor whose microcontroller writes to a serial line (here a pseudo-terminal), or sends
+//! datagrams.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
@@ -23,7 +24,7 @@ use twintac_source::{
 
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The two ends of a pseudo-terminal: the board's, and the path of the computer's.
+/// The two ends of a pseudo-terminal: the board's end, and the path of the computer's end.
 fn terminal() -> (TTYPort, TTYPort, String) {
     let (board, computer) = TTYPort::pair().unwrap();
     let path = computer.name().unwrap();
@@ -68,7 +69,7 @@ fn frames_over_i2c(n: usize) -> Vec<Reading> {
     (0..n).map(|_| reader.read().unwrap()).collect()
 }
 
-/// What a board would write of a frame.
+/// The line that a board would write for a frame.
 fn line_of(reading: &Reading) -> String {
     let frame = &reading.frame;
     let mut cells = vec![reading.sequence.to_string(), frame.triggered_us.to_string()];
@@ -136,7 +137,7 @@ fn times_are_those_at_which_the_board_read() {
     let description = Description::parse("board.toml", text).unwrap();
     let line = SerialLine::open(&path, &description).unwrap();
     let mut source = LineSource::new(line, &description, 1, clock()).unwrap();
-    // Lines that come in bursts of five, as a port that holds its bytes back gives them.
+    // Lines arrive in bursts of five, as from a port that buffers its bytes.
     let writer = std::thread::spawn(move || {
         for burst in 0..20 {
             std::thread::sleep(Duration::from_millis(50));
@@ -170,7 +171,7 @@ fn what_is_torn_doubled_late_or_garbage_is_marked_and_counted() {
     for (index, reading) in sent.iter().enumerate() {
         let line = line_of(reading);
         match index {
-            10 => bytes.extend(&line.as_bytes()[..30]), // torn: runs into the next
+            10 => bytes.extend(&line.as_bytes()[..30]), // incomplete: runs into the next line
             20 => bytes.extend([line.as_bytes(), line.as_bytes()].concat()),
             30 => {} // late: after the next one
             31 => bytes.extend([line.as_bytes(), line_of(&sent[30]).as_bytes()].concat()),
@@ -217,7 +218,7 @@ fn a_port_that_says_something_else_says_what() {
         }
     };
     assert!(
-        error.contains("none came for 3 s; 2 lines came, and none has readings as described"),
+        error.contains("none came for 3 s; 2 lines were received, none with readings as described"),
         "{error}"
     );
     drop((board, computer));

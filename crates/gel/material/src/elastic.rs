@@ -1,8 +1,8 @@
-//! What every model provides.
+//! The interface of all models.
 
 use crate::{Law, MaterialError};
 
-/// The constants of a model, in kPa where they are stresses. Field names are those of files.
+/// The constants of a model; stresses are in kPa. The names of the fields are those in files.
 pub(crate) trait Elastic: Sized {
     /// The law with these constants.
     type Law<'a>: Law
@@ -12,10 +12,11 @@ pub(crate) trait Elastic: Sized {
     /// The law; its energies are in kPa.
     fn law(&self) -> Self::Law<'_>;
 
-    /// Constants of a soft silicone, with a shear modulus of about 23 kPa: what tests of all models use.
+    /// Constants of a soft silicone with a shear modulus of about 23 kPa, which the tests of all
+    /// models use.
     fn example() -> Self;
 
-    /// Refuses constants that are not those of a material.
+    /// Checks that the constants are those of a material.
     ///
     /// # Errors
     /// The first constant that is wrong.
@@ -24,10 +25,10 @@ pub(crate) trait Elastic: Sized {
     /// Shear modulus at small strain, kPa.
     fn shear_modulus_kpa(&self) -> f64;
 
-    /// As [`crate::Model::in_words`].
+    /// See [`crate::Model::in_words`].
     fn in_words(&self) -> String;
 
-    /// As [`crate::Model::volume_modulus_kpa`].
+    /// See [`crate::Model::volume_modulus_kpa`].
     fn volume_modulus_kpa(&self, bulk_modulus_kpa: f64) -> f64 {
         bulk_modulus_kpa
     }

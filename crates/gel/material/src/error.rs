@@ -4,16 +4,16 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{field}` {problem}; {hint}")]
 pub struct MaterialError {
-    /// The constant, as files name it: `terms[1].alpha`.
+    /// The constant, with its name in files: `terms[1].alpha`.
     pub field: String,
-    /// What is wrong, read after the field's name.
+    /// What is wrong: the end of a sentence that begins with the field's name.
     pub problem: String,
     /// What to do about it.
     pub hint: String,
 }
 
 impl MaterialError {
-    /// A value that is not as expected.
+    /// A value that is not the expected one.
     pub(crate) fn value(field: impl Into<String>, found: f64, expected: &str) -> Self {
         Self {
             field: field.into(),
@@ -23,7 +23,7 @@ impl MaterialError {
     }
 }
 
-/// Refuses what is not a finite number.
+/// Fails unless the number is finite.
 pub(crate) fn finite(field: &str, value: f64) -> Result<(), MaterialError> {
     if value.is_finite() {
         Ok(())
@@ -32,7 +32,7 @@ pub(crate) fn finite(field: &str, value: f64) -> Result<(), MaterialError> {
     }
 }
 
-/// Refuses what is not a finite number above zero.
+/// Fails unless the number is finite and above zero.
 pub(crate) fn positive(field: &str, value: f64) -> Result<(), MaterialError> {
     if value.is_finite() && value > 0.0 {
         Ok(())

@@ -2,7 +2,8 @@
 
 use crate::wide::{Real, Wide};
 
-/// The invariants of eight deformations: with `C = FᵀF`, `I1 = tr C`, `I2 = (I1² - tr C²)/2` and `J = det F`.
+/// The invariants of eight deformations: with `C = FᵀF`, `I1 = tr C`, `I2 = (I1² - tr C²)/2` and
+/// `J = det F`.
 #[derive(Clone, Copy, Debug)]
 pub struct Invariants<T> {
     /// `I1`
@@ -26,21 +27,21 @@ pub struct Slopes<T> {
     pub volume: Wide<T>,
 }
 
-/// Second derivatives of an energy in the invariants. Those in `I2` are read only if the law uses it, those in `I1` and `I2` alone only if the law is
-/// curved.
+/// Second derivatives of an energy in the invariants. Those in `I2` are read only if the law uses
+/// `I2`; those in `I1` and `I2` alone are read only if [`Law::IS_CURVED`](crate::Law::IS_CURVED).
 #[derive(Clone, Copy, Debug)]
 pub struct Curvatures<T> {
-    /// In `I1` twice.
+    /// Twice in `I1`.
     pub first_first: Wide<T>,
     /// In `I1` and `I2`.
     pub first_second: Wide<T>,
-    /// In `I2` twice.
+    /// Twice in `I2`.
     pub second_second: Wide<T>,
     /// In `I1` and `J`.
     pub first_volume: Wide<T>,
     /// In `I2` and `J`.
     pub second_volume: Wide<T>,
-    /// In `J` twice.
+    /// Twice in `J`.
     pub volume_volume: Wide<T>,
 }
 

@@ -1,14 +1,15 @@
-//! Laws of the change of shape alone, in the invariants.
+//! Laws that depend on the change of shape alone, in the invariants.
 
 use crate::stretch_law::NoStretches;
 use crate::wide::{Real, Wide};
 use crate::{Curvatures, Invariants, Law, Slopes};
 
-/// An energy of the change of shape: a function of `Ī1 = J^(-2/3) I1` and `Ī2 = J^(-4/3) I2`.
+/// An energy that depends on the change of shape alone: a function of `Ī1 = J^(-2/3) I1` and
+/// `Ī2 = J^(-4/3) I2`.
 pub(crate) trait IsochoricLaw: Copy + Sync {
     /// Whether it depends on `Ī2`.
     const USES_SECOND: bool;
-    /// Whether any of its second derivatives is other than zero.
+    /// Whether any of its second derivatives is nonzero.
     const IS_CURVED: bool;
 
     /// The energy.

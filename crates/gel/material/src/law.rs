@@ -1,20 +1,21 @@
-//! A material's law: its energy and the derivatives, as finite elements need them.
+//! The law of a material: its energy and the derivatives that finite elements need.
 
 use crate::wide::{Real, Wide};
 use crate::{Curvatures, Invariants, Slopes, StretchLaw};
 
-/// The energy per volume at rest, without the part of the mean volume change: `W(I1, I2, J)`, and the part of a [`StretchLaw`]. At rest the energy is
-/// zero and a minimum.
+/// The energy per undeformed volume, kPa: `W(I1, I2, J)`, and the part of a [`StretchLaw`]. The
+/// term of the averaged volume change is not included. In the undeformed state the energy is zero,
+/// which is its minimum.
 pub trait Law: Copy + Sync {
-    /// The type of its part in the isochoric principal stretches.
+    /// The type of its part in isochoric principal stretches.
     type Stretches: StretchLaw;
     /// Whether it depends on `I2`.
     const USES_SECOND: bool;
-    /// Whether any of its second derivatives in `I1` and `I2` is other than zero.
+    /// Whether any of its second derivatives in `I1` and `I2` is nonzero.
     const IS_CURVED: bool;
     /// Whether it depends on the change of shape alone, so that its stress has no hydrostatic part.
     const IS_ISOCHORIC: bool;
-    /// Whether it is defined, and smooth, at `J <= 0`.
+    /// Whether it is defined and smooth at `J <= 0`.
     const BEARS_INVERSION: bool;
 
     /// `W`.
@@ -26,11 +27,11 @@ pub trait Law: Copy + Sync {
     /// Its second derivatives.
     fn curvatures<T: Real>(&self, at: &Invariants<T>) -> Curvatures<T>;
 
-    /// Its part in the stretches.
+    /// Its part in the stretches, if it has one.
     fn stretches(&self) -> Option<Self::Stretches>;
 }
 
-/// What a solver has to know of a law before it evaluates it.
+/// What a solver needs to know of a law before it evaluates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LawProperties {
     /// See [`Law::USES_SECOND`].

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::positive;
 use crate::{MaterialError, Model, NeoHookean};
 
-/// A nearly incompressible, possibly relaxing, isotropic rubber.
+/// An isotropic, nearly incompressible rubber, which may relax.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -18,18 +18,21 @@ pub struct Material {
     pub prony: Vec<PronyTerm>,
 }
 
-/// One term of a Prony series: this part of the instantaneous stress relaxes with this time constant.
+/// One term of a Prony series: a fraction of the instantaneous stress that relaxes with a time
+/// constant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PronyTerm {
-    /// Part of the instantaneous deviatoric stress that relaxes, in (0, 1); the sum over all terms stays below 1.
+    /// Fraction of the instantaneous deviatoric stress that relaxes, in (0, 1); the sum over all
+    /// terms stays below 1.
     pub weight: f64,
     /// Time constant, s.
     pub time_s: f64,
 }
 
 impl Material {
-    /// A neo-Hookean material from its constants at small strain: Young's modulus, kPa, and Poisson's ratio below 1/2.
+    /// A neo-Hookean material from its constants at small strain: Young's modulus, kPa, and
+    /// Poisson's ratio below 1/2.
     #[must_use]
     pub fn neo_hookean(youngs_modulus_kpa: f64, poissons_ratio: f64) -> Self {
         Self {
@@ -41,13 +44,13 @@ impl Material {
         }
     }
 
-    /// Modulus of the mean volume change, kPa; see [`Model::volume_modulus_kpa`].
+    /// Modulus κ of the averaged volume change, kPa; see [`Model::volume_modulus_kpa`].
     #[must_use]
     pub fn volume_modulus_kpa(&self) -> f64 {
         self.model.volume_modulus_kpa(self.bulk_modulus_kpa)
     }
 
-    /// Refuses constants that are not those of a material.
+    /// Checks that the constants are those of a material.
     ///
     /// # Errors
     /// The first constant that is wrong.
@@ -84,7 +87,7 @@ impl Material {
         }
         if !self.prony.is_empty() && !self.model.properties().is_isochoric {
             let problem = format!(
-                "is only for models of the change of shape alone, not `{}`",
+                "requires a model of the isochoric energy, which `{}` is not",
                 self.model.name()
             );
             return Err(error(problem, "remove it, or choose another model"));

@@ -1,9 +1,9 @@
-//! Laws of the principal stretches alone.
+//! Laws that depend on the principal stretches alone.
 
 use crate::wide::{Real, Wide};
 use crate::{Curvatures, Invariants, Law, Slopes, StretchLaw};
 
-/// A law of the stretches alone as a [`Law`].
+/// A law of the stretches alone, as a [`Law`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretches<L>(pub(crate) L);
 

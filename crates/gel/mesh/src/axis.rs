@@ -1,4 +1,4 @@
-//! The lines of a mesh along x or y.
+//! The grid lines of a mesh along x or y.
 
 use crate::size::SizeField;
 use crate::{MeshError, Stretch};
@@ -12,21 +12,24 @@ pub(crate) struct Core<'a> {
     pub(crate) stretches: &'a [Stretch],
 }
 
-/// The lines across one axis, in two versions: ideal for the contact, and snapped to the faces of the inclusions.
+/// The lines of one axis, in two versions: ideal for the contact, and snapped to the faces of the
+/// inclusions.
 ///
-/// One tensor grid cannot have both, as the face of an inclusion may lie anywhere under the press. So the ideal lines are used in the upper gel,
-/// the snapped ones from the board to the top of the inclusions, and in between the lines lean from one to the other.
+/// One tensor grid cannot be both, because the face of an inclusion may be anywhere under the
+/// press. The ideal lines are used in the upper gel, the snapped ones from the board to the top of
+/// the inclusions. In between the lines lean from one to the other.
 pub(crate) struct Axis {
-    /// Lines laid outwards from the focus, mm.
+    /// Lines, built outwards from the focus, mm.
     pub(crate) ideal_mm: Vec<f64>,
-    /// The same lines, moved so that one lies in each face of the inclusions, mm.
+    /// The same lines, moved so that one is in each face of the inclusions, mm.
     pub(crate) snapped_mm: Vec<f64>,
-    /// The line about which the cuts of cells are mirrored.
+    /// Index of the line about which the cuts of cells are mirrored.
     pub(crate) mirror: usize,
 }
 
 impl Axis {
-    /// Lines from `low` to `high`, outwards from the focus, or else from the middle. The mirror line keeps a margin to both ends.
+    /// Lines from `low` to `high`, built outwards from the focus, or from the middle without one.
+    /// The mirror line is at least the margin away from both ends.
     pub(crate) fn new(
         [low_mm, high_mm]: [f64; 2],
         focus: Option<Core<'_>>,
@@ -60,19 +63,20 @@ impl Axis {
         })
     }
 
-    /// Position of a line where the snapped version has this weight, from 0 to 1.
+    /// Position of a line, mm; `inclusion_share` (0 to 1) is the weight of the snapped version.
     pub(crate) fn at_mm(&self, line: usize, inclusion_share: f64) -> f64 {
         self.ideal_mm[line] + inclusion_share * (self.snapped_mm[line] - self.ideal_mm[line])
     }
 
-    /// The snapped line in a face (or at an end of the axis).
+    /// Index of the snapped line in a face (or at an end of the axis).
     pub(crate) fn line_at(&self, face_mm: f64) -> usize {
         nearest(&self.snapped_mm, face_mm)
     }
 }
 
 impl Core<'_> {
-    /// Lines across the focus, evenly spaced except in its stretches, without those within half an edge of an end of the axis.
+    /// Lines over the focus, evenly spaced except in its stretches. Lines closer than half an edge
+    /// to an end of the axis are left out.
     fn lines_mm(&self, [low_mm, high_mm]: [f64; 2]) -> Result<Vec<f64>, MeshError> {
         let [below_mm, above_mm] = [self.side_mm(-1.0)?, self.side_mm(1.0)?];
         let offsets_mm = below_mm
@@ -88,7 +92,7 @@ impl Core<'_> {
             .collect())
     }
 
-    /// Distances of the lines on one side, the one through the centre first.
+    /// Distances of the lines on one side from the centre; the first is 0.
     fn side_mm(&self, sign: f64) -> Result<Vec<f64>, MeshError> {
         let n_edges = (self.radius_mm / self.edge_mm - 1e-9).ceil().clamp(1.0, 2000.0);
         if self.stretches.is_empty() {
@@ -106,7 +110,8 @@ impl Core<'_> {
     }
 }
 
-/// Moves lines so that one lies in every face: the choice of lines that moves them least, the lines between spread evenly.
+/// Moves lines so that one is in every face. The lines are chosen so that they move least; the
+/// lines between them are spread evenly.
 fn snap(lines_mm: &[f64], faces_mm: &[f64], mirror: usize) -> Result<Vec<f64>, MeshError> {
     let last = lines_mm.len() - 1;
     let inner: Vec<f64> = faces_mm
@@ -138,7 +143,8 @@ fn snap(lines_mm: &[f64], faces_mm: &[f64], mirror: usize) -> Result<Vec<f64>, M
     Ok(snapped_mm)
 }
 
-/// A line for each face, in order and no line twice, with the smallest sum of squared distances (dynamic programming).
+/// A line for each face, in order and without repetition, with the smallest sum of squared
+/// distances (dynamic programming).
 fn choose(lines_mm: &[f64], faces_mm: &[f64], mirror: usize) -> Vec<usize> {
     let n = lines_mm.len();
     let cost = |line: usize, face_mm: f64| {
@@ -146,7 +152,8 @@ fn choose(lines_mm: &[f64], faces_mm: &[f64], mirror: usize) -> Vec<usize> {
         // Of two equally near lines the outer one is taken, on both sides of the mirror line.
         (lines_mm[line] - face_mm).powi(2) * if inward { 1.0 + 1e-9 } else { 1.0 }
     };
-    // best[f][l]: least cost of the first f faces with lines below l; came[f][l]: the line of face f then.
+    // `best[f][l]`: lowest cost of the first `f` faces with lines below `l`. `came[f][l]`: the line
+    // of face `f` in that case.
     let mut best = vec![vec![0.0; n + 1]];
     let mut came: Vec<Vec<usize>> = Vec::new();
     for (f, &face_mm) in faces_mm.iter().enumerate() {

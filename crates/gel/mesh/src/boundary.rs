@@ -3,9 +3,10 @@
 /// Faces of a positively oriented tetrahedron, counter-clockwise seen from outside.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// Boundary triangles, outward, in the order of the tetrahedra. Nodes must be below `n_nodes`.
+/// Boundary triangles, counterclockwise seen from outside, in the order of the tetrahedra. Nodes
+/// must be below `n_nodes`.
 pub(crate) fn outward_triangles(tets: &[[u32; 4]], n_nodes: usize) -> Vec<[u32; 3]> {
-    // Faces by their lowest node: face `i` of all tetrahedra together lies in its node's stretch of `faces`.
+    // Faces sorted by their lowest node: each node has a range of `faces`.
     let mut ends = vec![0_usize; n_nodes + 1];
     for (nodes, face) in all_faces(tets) {
         ends[lowest(nodes, face) as usize + 1] += 1;
@@ -22,7 +23,7 @@ pub(crate) fn outward_triangles(tets: &[[u32; 4]], n_nodes: usize) -> Vec<[u32; 
         faces[*place] = ([key[1], key[2]], index);
         *place += 1;
     }
-    // Within a stretch the two sides of an inner face have the same other nodes.
+    // Within a range, the two sides of an inner face have the same other nodes.
     let mut is_outer = vec![false; 4 * tets.len()];
     for node in 0..n_nodes {
         let stretch = &mut faces[starts[node]..starts[node + 1]];

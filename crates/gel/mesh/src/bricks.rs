@@ -1,4 +1,4 @@
-//! Blocks with nodes at given coordinates, for checks against closed forms and other codes.
+//! Blocks with nodes at given coordinates, for comparisons with closed forms and other programs.
 
 use glam::DVec3;
 
@@ -12,7 +12,8 @@ pub fn even(from: f64, to: f64, n: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Values from 0 to `to`, spaced by `edge` at first and growing by `growth` after `fine`.
+/// Values from 0 to `to`. Their spacing is `edge` up to `fine`, and grows by the factor `growth`
+/// from there on.
 #[must_use]
 pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
     let mut values = vec![0.0];
@@ -24,7 +25,7 @@ pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
         at += step;
         values.push(at);
     }
-    // Stretch the graded part so that the last value is `to`.
+    // Scales the graded part so that the last value is `to`.
     let last = values[values.len() - 1];
     let scale_from = fine.min(to);
     for value in &mut values {
@@ -35,7 +36,7 @@ pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
     values
 }
 
-/// The values, of which the first is 0, and their mirror images.
+/// The values, the first of which is 0, and their mirror images.
 #[must_use]
 pub fn mirrored(half: &[f64]) -> Vec<f64> {
     half.iter()
@@ -46,7 +47,7 @@ pub fn mirrored(half: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// A block of bricks between these lines, six tetrahedra each, its bottom bonded.
+/// A block of bricks between these lines, each cut into six tetrahedra. Its bottom is bonded.
 #[must_use]
 pub fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
     let (nx, ny, nz) = (x_mm.len(), y_mm.len(), z_mm.len());
@@ -84,7 +85,8 @@ pub fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
     mesh
 }
 
-/// Bonds the boundary nodes at these positions and no others; the rest of the boundary is free.
+/// Bonds the boundary nodes for which `is_bonded` holds, and no others; the rest of the boundary is
+/// free.
 pub fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
     let bonded: Vec<bool> = mesh.nodes_mm.iter().map(|&at| is_bonded(at)).collect();
     mesh.name_nodes(|node| bonded[node as usize]);

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-/// A mesh that can't be made or read.
+/// A mesh that cannot be made or read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// An invalid setting.
     #[error("`{field}` is {found}, expected {expected}")]
     Setting {
-        /// The offending field.
+        /// Name of the field.
         field: String,
         /// What was expected.
         expected: String,
@@ -28,16 +28,16 @@ pub enum MeshError {
         /// What was found.
         found: String,
     },
-    /// The solid names a surface that was not handed over.
+    /// The surface that the solid names was not passed.
     #[error("the surface `{path}` is not among those loaded")]
     SurfaceMissing {
-        /// Its path, as the solid names it.
+        /// Path of the surface, as in the solid.
         path: String,
     },
-    /// A triangle surface that can't be meshed.
+    /// A triangle surface that cannot be meshed.
     #[error("the surface `{path}`: expected {expected}, found {found}")]
     Surface {
-        /// Its path, as the solid names it.
+        /// Path of the surface, as in the solid.
         path: String,
         /// What was expected.
         expected: String,
@@ -45,22 +45,22 @@ pub enum MeshError {
         found: String,
     },
     /// The mesh would be larger than the limit of the generator.
-    #[error("the mesh would have {found} lattice points, at most {most} are made; increase `edge_mm`")]
+    #[error("the mesh would have {found} lattice points, at most {most} are allowed; increase `edge_mm`")]
     TooFine {
-        /// Lattice points of the wanted mesh.
+        /// Number of lattice points of the requested mesh.
         found: usize,
         /// The limit.
         most: usize,
     },
-    /// No edge length gives the wanted number of nodes.
+    /// No edge length gives the requested number of nodes.
     #[error("no mesh with {target} nodes ± 10 %, the nearest has {nearest}")]
     NodeCount {
-        /// Wanted number of nodes.
+        /// Requested number of nodes.
         target: usize,
         /// Nearest number of nodes that was found.
         nearest: usize,
     },
-    /// A tetrahedron without volume, or too flat to compute with.
+    /// A tetrahedron without volume, or too flat for computations.
     #[error(
         "tetrahedron {tet} at {center_mm} has a volume of {volume_mm3:.3e} mm³, expected at least {least_mm3:.3e}"
     )]
@@ -71,16 +71,16 @@ pub enum MeshError {
         center_mm: DVec3,
         /// Its volume, mm³.
         volume_mm3: f64,
-        /// The least volume accepted for its size, mm³.
+        /// The smallest volume that is accepted for its size, mm³.
         least_mm3: f64,
     },
-    /// Nothing of the solid is left to mesh.
+    /// Nothing of the solid remains to be meshed.
     #[error("the mesh is empty: {reason}")]
     Empty {
         /// Why.
         reason: String,
     },
-    /// A mesh file that can't be understood.
+    /// A mesh file that cannot be understood.
     #[error("mesh file, {place}: expected {expected}, found {found}")]
     File {
         /// Where: a line (text) or a byte offset (binary).
@@ -93,7 +93,7 @@ pub enum MeshError {
     /// A mesh in a file whose lengths are not in mm.
     #[error("the mesh {0}")]
     Extent(#[from] twintac_shape::ExtentError),
-    /// Bodies in a mesh file that touch and do not share nodes.
+    /// Bodies in a mesh file that touch without sharing nodes.
     #[error(
         "nodes {} and {} are both at {at_mm} mm: bodies that touch have to share nodes (in Gmsh, `Coherence;` before meshing or `Coherence Mesh;` \
          after it)",
@@ -103,7 +103,7 @@ pub enum MeshError {
     NodesTwice {
         /// The nodes' tags in the file.
         tags: [u64; 2],
-        /// Where they are, mm.
+        /// Their position, mm.
         at_mm: DVec3,
     },
     /// Tetrahedra in a mesh file that overlap, or bodies that touch without common nodes.
@@ -111,20 +111,20 @@ pub enum MeshError {
         "tetrahedra overlap or touch without common nodes at {at_mm} mm: unite the bodies and mesh them again (in Gmsh, `BooleanFragments`)"
     )]
     Overlap {
-        /// A place there, mm.
+        /// A point there, mm.
         at_mm: DVec3,
     },
-    /// The boundary of a mesh in a file has no inside.
+    /// The boundary of a mesh in a file encloses nothing.
     #[error("the boundary of the mesh {0}")]
     Boundary(#[source] twintac_shape::SurfaceError),
-    /// A field to write that does not fit the mesh.
+    /// A field that does not fit the mesh that it is to be written with.
     #[error("the field `{name}` has {found} values, expected {expected} finite ones")]
     Field {
         /// Name of the field.
         name: String,
-        /// Values needed.
+        /// Number of values that are required.
         expected: usize,
-        /// Values given.
+        /// Number of values that were given.
         found: String,
     },
 }

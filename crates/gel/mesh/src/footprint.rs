@@ -1,24 +1,24 @@
-//! Solids that stand on a rectangle: blocks and domes, as a bent box.
+//! Solids with a rectangular footprint, which are a bent box: blocks and domes.
 
 use glam::DVec3;
 use twintac_shape::{Dome, Solid, Surfaces};
 
-/// A box and the way it is bent into a solid.
+/// A box, and how it is bent into a solid.
 pub(crate) struct Footprint {
-    /// The unbent box: its low and high corner, mm.
+    /// The box before it is bent: its low and high corner, mm.
     pub(crate) box_mm: [DVec3; 2],
     bend: Bend,
 }
 
 enum Bend {
-    /// Presses the top edges of a block in until they are round.
+    /// Moves the top edges of a block inwards until they are round.
     RoundEdges { radius_mm: f64 },
-    /// Stretches each column between the board's fittings and the domed top.
+    /// Stretches each column between the inclusions on the board and the domed top.
     Dome(Dome),
 }
 
 impl Footprint {
-    /// The footprint of a valid block or dome; none of a triangle surface.
+    /// The footprint of a valid block or dome; `None` for a triangle surface.
     pub(crate) fn of(solid: &Solid) -> Option<Self> {
         let bend = match solid {
             Solid::Block { edge_radius_mm, .. } => Bend::RoundEdges {
@@ -34,7 +34,7 @@ impl Footprint {
         })
     }
 
-    /// Takes a point of the box to the solid. Nothing moves up to the height `base_mm`.
+    /// Maps a point of the box to the solid. Points up to the height `base_mm` do not move.
     pub(crate) fn bend_mm(&self, point_mm: DVec3, base_mm: f64) -> DVec3 {
         match &self.bend {
             Bend::RoundEdges { radius_mm } => self.round_edges_mm(point_mm, *radius_mm),
@@ -50,7 +50,7 @@ impl Footprint {
         }
     }
 
-    /// Takes a point of the solid back to the box, but for the edges' rounding.
+    /// Maps a point of the solid back to the box. It does not undo the rounding of edges.
     pub(crate) fn unbend_mm(&self, point_mm: DVec3, base_mm: f64) -> DVec3 {
         match &self.bend {
             Bend::RoundEdges { .. } => point_mm,
@@ -85,8 +85,9 @@ impl Footprint {
         }
     }
 
-    /// Maps the squares around the top edges to quarter discs, along rays from the edge's axis, so that both flanks of an edge
-    /// stay on the solid's surface. Two rounded edges meet at a corner in a mitre.
+    /// Maps the squares around the top edges to quarter discs, along rays from the axis of the
+    /// edge, so that both sides of an edge stay on the surface of the solid. Two rounded edges meet
+    /// at a corner in a mitre.
     fn round_edges_mm(&self, point_mm: DVec3, radius_mm: f64) -> DVec3 {
         let [low, high] = self.box_mm;
         let center = (0.5 * (low + high)).with_z(0.0);
@@ -105,7 +106,7 @@ impl Footprint {
     }
 }
 
-/// Height of a dome's top above a point in plan, that of the nearest edge beside it, mm.
+/// Height of a dome's top above a point of the plan, mm; beside the dome, that of its nearest edge.
 fn dome_top_mm(dome: &Dome, at_mm: DVec3) -> f64 {
     let x_mm = at_mm.x.max(dome.x_mm[0]).min(dome.x_mm[1]);
     let y_mm = at_mm.y.max(dome.y_mm[0]).min(dome.y_mm[1]);

@@ -1,4 +1,4 @@
-//! Generating a mesh of a solid.
+//! Generates a mesh of a solid.
 
 use twintac_shape::{SignedDistance, Solid, Surfaces, TriangleSurface};
 
@@ -8,20 +8,23 @@ use crate::quality::least_dihedral_deg;
 use crate::region::Region;
 use crate::{Cuboid, MeshError, MeshSettings, TetMesh, grid, stuffing};
 
-/// Smallest dihedral angle of a stuffed mesh that needs no second try, degrees.
+/// Smallest dihedral angle of a stuffed mesh, degrees, that is good enough not to try another
+/// lattice.
 const GOOD_DIHEDRAL_DEG: f64 = 9.0;
 
-/// How far the base of a triangle surface may be from z = 0, mm.
+/// Largest distance of the base of a triangle surface from z = 0, mm.
 const OFF_BOARD_MM: f64 = 0.01;
 
 /// Meshes a solid without its inclusions. Nodes on the board (z = 0) and on inclusions are bonded.
 ///
-/// Blocks and domes are cut from a bent tensor grid and mirrored about the first focus. Triangle surfaces are found in `surfaces` by
-/// their path, must be closed and stand on z = 0, and are meshed by isosurface stuffing. The same input gives the same mesh, bit for bit.
+/// Blocks and domes are cut from a bent tensor grid, which is mirrored about the first focus.
+/// Triangle surfaces are found in `surfaces` by their path. They must be closed and stand on z = 0,
+/// and are meshed by isosurface stuffing. The same input gives the same mesh, bit for bit.
 ///
 /// # Errors
-/// Invalid settings, solids or inclusions; more than 20 million lattice points; a flat tetrahedron, as where faces of inclusions are almost
-/// aligned along two axes: faces closer than a twentieth of the shortest edge are merged, others are not.
+/// Invalid settings, solids or inclusions; more than 20 million lattice points; a flat tetrahedron,
+/// for example where faces of inclusions are almost aligned along two axes. (Faces closer than a
+/// twentieth of the shortest edge are merged, others are not.)
 pub fn generate(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -33,10 +36,11 @@ pub fn generate(
     Ok(mesh)
 }
 
-/// Meshes as [`generate`] does, for those who count nodes before they take a mesh: tetrahedra may be flat, which [`TetMesh::check_volumes`] tells.
+/// Meshes like [`generate`], for callers that count nodes before they accept a mesh. Tetrahedra may
+/// be flat, which [`TetMesh::check_volumes`] reports.
 ///
 /// # Errors
-/// Those of [`generate`], but for flat tetrahedra.
+/// Those of [`generate`], except for flat tetrahedra.
 pub fn generate_unchecked(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -94,11 +98,11 @@ fn stuff(
     for (index, inclusion) in inclusions.iter().enumerate() {
         inclusion.check(index, [low_mm, high_mm], high_mm.z)?;
     }
-    // Where a surface nearly touches lattice points, a slightly different lattice gives better angles; where narrow cells between
-    // inclusions lean over their neighbours, upright lines do.
+    // Where a surface nearly touches lattice points, a slightly different lattice gives better
+    // angles. Where narrow cells between inclusions lean over their neighbours, upright lines do.
     let mut best: Option<(f64, TetMesh)> = None;
     for factor in [1.0, 0.97, 1.03, 0.94, 1.06] {
-        // The lattice has two points a cell.
+        // The lattice has two points for each cell.
         let settings = settings.scaled(factor * 2_f64.cbrt());
         let mut lattice = Lattice::new([low_mm, high_mm], inclusions, &settings, 0.0)?;
         if best.is_some() {
@@ -120,12 +124,13 @@ fn stuff(
     })
 }
 
-/// Meshes a solid with about `n_nodes` nodes (± 10 %): all edge lengths of the settings are multiplied by one factor. Also returns the
-/// settings with the edge lengths that were found.
+/// Meshes a solid with about `n_nodes` nodes (± 10 %), by multiplying all edge lengths of the
+/// settings with one factor. Also returns the settings with the edge lengths that were found.
 ///
 /// # Errors
-/// Those of [`generate`], and [`MeshError::NodeCount`] where no factor gives such a number: lines are added as a whole, often two at a time or
-/// along several axes at once, which is a large step where there are few.
+/// Those of [`generate`], and [`MeshError::NodeCount`] if no factor gives such a number. Lines are
+/// added as a whole, often two at a time or along several axes at once, which is a large step in a
+/// mesh of few lines.
 pub fn generate_with_node_count(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -144,7 +149,7 @@ pub fn generate_with_node_count(
     Ok((generate(solid, surfaces, inclusions, &found)?, found))
 }
 
-/// The settings whose mesh has the number of nodes nearest to the wanted one.
+/// The settings whose mesh has the number of nodes nearest to the requested one.
 fn search(
     settings: &MeshSettings,
     target: usize,
@@ -163,7 +168,8 @@ fn search(
         }
         Ok::<_, MeshError>((n_nodes, best))
     };
-    // The count is roughly proportional to the inverse cube of the edge length, with jumps: follow that with ever shorter steps.
+    // The count is roughly proportional to the inverse cube of the edge length, with jumps. The
+    // factor follows this rule, in steps that become shorter.
     let (mut too_fine, mut too_coarse) = (0.0_f64, f64::INFINITY);
     let mut factor = 1.0;
     for step in 0..24 {
@@ -179,7 +185,8 @@ fn search(
         }
         factor *= (n_nodes as f64 / target.max(1) as f64).powf(exponent);
     }
-    // The wanted count may be in a range too narrow for that: bisect until a single jump is left.
+    // The requested count may be in too narrow a range for these steps: bisect until a single jump
+    // remains.
     while too_fine > 0.0 && too_coarse < f64::INFINITY && (too_coarse / too_fine - 1.0).abs() > 1e-9 {
         factor = (too_fine * too_coarse).sqrt();
         let (n_nodes, best) = attempt(factor)?;

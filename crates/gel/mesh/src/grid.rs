@@ -1,17 +1,22 @@
 //! Meshes of blocks and domes: a bent tensor grid whose hexahedra are cut into six tetrahedra each.
 //!
-//! Each hexahedron is cut along the diagonal from its lower corner nearest to the mirror lines (through the centre of contact)
-//! to its upper corner farthest from them (Kuhn's cut). Every hexahedron of a quadrant is cut alike, so inner nodes all have
-//! the same neighbours and surface nodes the same share of area, which contact forces and nodal pressures need. Alternating cuts
-//! into five have better angles but two kinds of nodes, one with twice the area of the other. The four quadrants mirror each
-//! other, so a centred press of a symmetric gel stays symmetric. And the diagonals end in the top edges, which can then
-//! be rounded: a cut across a rounded edge would leave flat tetrahedra.
+//! Each hexahedron is cut along the diagonal from its lower corner nearest to the mirror lines
+//! (through the centre of contact) to its upper corner farthest from them (Kuhn's subdivision).
+//! Every hexahedron of a quadrant is cut in the same way. All inner nodes then have the same
+//! neighbours and all surface nodes the same share of area, which contact forces and nodal
+//! pressures need. Alternating cuts into five tetrahedra would give better angles, but two kinds of
+//! nodes, one with twice the area of the other.
+//!
+//! The four quadrants mirror each other, so a centred press of a symmetric gel stays symmetric. The
+//! diagonals end in the top edges, which can then be rounded: a cut across a rounded edge would
+//! leave flat tetrahedra.
 
 use crate::footprint::Footprint;
 use crate::lattice::Lattice;
 use crate::{Cuboid, MeshError, MeshSettings, TetMesh};
 
-/// The orders in which a path along the edges of a cube can go from one corner to the opposite one, with their signs.
+/// The paths along the edges of a cube from one corner to the opposite one, as the order of axes,
+/// with their signs.
 const PATHS: [([usize; 3], bool); 6] = [
     ([0, 1, 2], true),
     ([1, 2, 0], true),
@@ -21,7 +26,7 @@ const PATHS: [([usize; 3], bool); 6] = [
     ([1, 0, 2], false),
 ];
 
-/// The lattice of a block or dome, in the coordinates of its unbent box.
+/// The lattice of a block or dome, in the coordinates of its box before bending.
 pub(crate) fn lattice(
     footprint: &Footprint,
     inclusions: &[Cuboid],
@@ -46,7 +51,7 @@ pub(crate) fn lattice(
     )
 }
 
-/// Cuts a lattice into tetrahedra and bends it into the solid.
+/// Cuts a lattice into tetrahedra, and bends it into the solid.
 pub(crate) fn mesh(footprint: &Footprint, lattice: &Lattice) -> TetMesh {
     let [nx, ny, nz] = lattice.points();
     let index = |[i, j, k]: [usize; 3]| (k * ny + j) * nx + i;
@@ -77,7 +82,7 @@ pub(crate) fn mesh(footprint: &Footprint, lattice: &Lattice) -> TetMesh {
     mesh
 }
 
-/// Cells that are not in an inclusion.
+/// Cells outside of inclusions.
 fn cells(lattice: &Lattice) -> impl Iterator<Item = [usize; 3]> {
     let [nx, ny, nz] = lattice.points();
     (0..nz - 1)
@@ -85,7 +90,8 @@ fn cells(lattice: &Lattice) -> impl Iterator<Item = [usize; 3]> {
         .filter(|&cell| !lattice.is_inclusion(cell))
 }
 
-/// Numbers the lattice points that belong to a cell: how many there are, and the number of each (`u32::MAX` without a cell).
+/// Numbers the lattice points that belong to a cell. Returns how many there are, and the number of
+/// each (`u32::MAX` without a cell).
 pub(crate) fn number_nodes(lattice: &Lattice) -> (usize, Vec<u32>) {
     let [nx, ny, nz] = lattice.points();
     let mut numbers = vec![u32::MAX; nx * ny * nz];
@@ -103,7 +109,7 @@ pub(crate) fn number_nodes(lattice: &Lattice) -> (usize, Vec<u32>) {
     (n_nodes as usize, numbers)
 }
 
-/// Hands over the corners of the six tetrahedra of a cell, each with positive volume.
+/// Calls `put` with the corners of the six tetrahedra of a cell, each of positive volume.
 fn for_each_tet(lattice: &Lattice, cell: [usize; 3], mut put: impl FnMut([[usize; 3]; 4])) {
     let mirrored = [cell[0] < lattice.x.mirror, cell[1] < lattice.y.mirror, false];
     let flips = mirrored[0] != mirrored[1];

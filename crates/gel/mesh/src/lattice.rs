@@ -7,29 +7,30 @@ use crate::settings::{Cuboid, MeshSettings};
 use crate::size::SizeField;
 use crate::{Focus, MeshError};
 
-/// Lattice points that a mesh may have.
+/// Largest number of lattice points of a mesh.
 const MOST_POINTS: usize = 20_000_000;
 
-/// Lines along x and y and planes along z. Line positions depend on the height where there are inclusions, see [`Axis`].
+/// Lines along x and y, and planes along z. With inclusions, the positions of lines depend on the
+/// height; see [`Axis`].
 pub(crate) struct Lattice {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     pub(crate) z_mm: Vec<f64>,
-    /// Below this plane (an index into `z_mm`) lines follow the inclusions.
+    /// Index into `z_mm` of the plane below which lines follow the inclusions.
     inclusion_top: usize,
     /// The cells of each inclusion.
     boxes: Vec<IndexBox>,
 }
 
-/// A box of cells, from `low` to `high`, the latter excluded.
+/// A box of cells from `low` to `high`, without `high`.
 struct IndexBox {
     low: [usize; 3],
     high: [usize; 3],
 }
 
 impl Lattice {
-    /// A lattice over the box from `low_mm` to `high_mm`, focuses given in the lattice's own (unbent) coordinates. The
-    /// mirror lines keep a margin to the walls.
+    /// A lattice over the box from `low_mm` to `high_mm`. Focuses are in the coordinates of the
+    /// lattice (before bending). The mirror lines keep a margin to the walls.
     pub(crate) fn new(
         [low_mm, high_mm]: [DVec3; 2],
         inclusions: &[Cuboid],
@@ -113,7 +114,7 @@ impl Lattice {
         })
     }
 
-    /// The same lattice with the snapped lines up to the top, so that none lean.
+    /// The same lattice with snapped lines up to the top, so that no line leans.
     pub(crate) fn upright(mut self) -> Self {
         for axis in [&mut self.x, &mut self.y] {
             axis.ideal_mm.clone_from(&axis.snapped_mm);
@@ -133,7 +134,8 @@ impl Lattice {
         DVec3::new(self.x.at_mm(i, share), self.y.at_mm(j, share), z_mm)
     }
 
-    /// Weight of the snapped lines at a height: 1 up to the top of the inclusions, then falling to 0 half-way to the top of the lattice.
+    /// Weight of the snapped lines at a height: 1 up to the top of the inclusions, from there
+    /// falling to 0 half-way to the top of the lattice.
     fn inclusion_share(&self, z_mm: f64) -> f64 {
         let from_mm = self.z_mm[self.inclusion_top];
         let to_mm = 0.5 * (from_mm + self.z_mm[self.z_mm.len() - 1]);
@@ -144,12 +146,13 @@ impl Lattice {
         }
     }
 
-    /// Height of the tallest inclusion, mm; that of the board without any.
+    /// Height of the tallest inclusion, mm; that of the board if there is none.
     pub(crate) fn inclusion_top_mm(&self) -> f64 {
         self.z_mm[self.inclusion_top]
     }
 
-    /// The inclusions as the lattice has them: faces that were merged lie in one plane, boxes without a cell are gone.
+    /// The inclusions as the lattice represents them: merged faces are in one plane, boxes without
+    /// a cell are missing.
     pub(crate) fn inclusions(&self) -> Vec<Cuboid> {
         let at_mm =
             |[i, j, k]: [usize; 3]| DVec3::new(self.x.snapped_mm[i], self.y.snapped_mm[j], self.z_mm[k]);
@@ -164,21 +167,22 @@ impl Lattice {
             .collect()
     }
 
-    /// Whether a cell, named by its lowest point, lies in an inclusion.
+    /// Whether a cell, given by its lowest point, is in an inclusion.
     pub(crate) fn is_inclusion(&self, cell: [usize; 3]) -> bool {
         self.boxes
             .iter()
             .any(|b| (0..3).all(|axis| (b.low[axis]..b.high[axis]).contains(&cell[axis])))
     }
 
-    /// Whether a point lies on the board or on (or in) an inclusion.
+    /// Whether a point is on the board, or on or in an inclusion.
     pub(crate) fn is_bonded(&self, point: [usize; 3]) -> bool {
         let in_box = |b: &IndexBox| (0..3).all(|axis| (b.low[axis]..=b.high[axis]).contains(&point[axis]));
         point[2] == 0 || self.boxes.iter().any(in_box)
     }
 }
 
-/// Sorted faces strictly between the ends, together with the ends; of faces closer than a tolerance only the first.
+/// Sorted faces strictly between the ends, and the ends. Of faces closer than the tolerance only
+/// the first is kept.
 fn distinct_faces(faces: impl Iterator<Item = f64>, ends: [f64; 2], tolerance_mm: f64) -> Vec<f64> {
     let mut inner: Vec<f64> = faces
         .filter(|&f| f > ends[0] + tolerance_mm && f < ends[1] - tolerance_mm)

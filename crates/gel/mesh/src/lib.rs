@@ -1,20 +1,28 @@
-//! Tetrahedral meshes of gels: generated from a solid, imported from Gmsh, exported to VTK and STL. Lengths in mm.
+//! Tetrahedral meshes of gels: generated from a solid, imported from Gmsh, exported to VTK and STL.
 //!
-//! The gel stands on a board, the plane z = 0, and may have rigid boxes in it (sensor chips). It is glued to both: the nodes
-//! there are [`NodeSets::bonded`]. It is pressed from above, on [`NodeSets::top`].
+//! Input: a [`twintac_shape::Solid`], boxes of rigid parts in it (sensor chips) and
+//! [`MeshSettings`], or the bytes of a mesh file. Output: a [`TetMesh`], with lengths in mm.
 //!
-//! - [`generate`] meshes a [`twintac_shape::Solid`]. A [`Focus`] makes the mesh fine where a press and the taxels need it;
-//!   the pattern of nodes around the first focus does not depend on its position, so that presses at different positions
-//!   are discretised alike. Inclusions are cut out exactly.
-//! - [`generate_with_node_count`] finds the edge length for a given number of nodes.
-//! - [`gmsh::read`] imports files of Gmsh and fTetWild, [`gmsh::write`] writes a mesh for later use.
-//! - [`vtk::write`] writes a mesh and fields on it for ParaView, [`stl::write`] its surface for any viewer.
-//! - [`Quality`] has figures of the quality of a mesh.
+//! The gel stands on a board, the plane z = 0, and may enclose chips. It is glued to both: the
+//! nodes there are [`NodeSets::bonded`]. It is pressed from above, on [`NodeSets::top`].
 //!
-//! Meshes are the same bit for bit on every run.
+//! - [`generate`] meshes a solid. A [`Focus`] makes the mesh fine where a press and the taxels need
+//!   it. The pattern of nodes around the first focus does not depend on its position, so that
+//!   presses at different positions are discretized in the same way. Inclusions are cut out
+//!   exactly.
+//! - [`generate_with_node_count`] finds the edge length that gives a number of nodes.
+//! - [`TetMesh::refined`] cuts every tetrahedron into eight. The solver has displacements on the
+//!   refined mesh and pressures on the coarse one.
+//! - [`gmsh::read`] imports files of Gmsh and fTetWild; [`gmsh::write`] writes a mesh for later
+//!   use.
+//! - [`vtk::write`] writes a mesh with fields on it for ParaView, [`stl::write`] its surface for
+//!   any viewer.
+//! - [`Quality`] has measures of the quality of a mesh.
+//!
+//! The same input gives the same mesh on every run, bit for bit.
 //!
 //! # Example
-//! A strip of gel over two chips, fine where a tip of 2 mm radius is going to press it:
+//! A strip of gel over two chips, with a fine mesh where a tip of 2 mm radius will press it:
 //! ```
 //! use glam::DVec3;
 //! use twintac_mesh::{Cuboid, Focus, MeshSettings, Quality, gel_volume_mm3, generate, gmsh};
@@ -46,10 +54,19 @@
 //! # Ok::<(), twintac_mesh::MeshError>(())
 //! ```
 //!
-//! # Method
-//! Blocks and domes: a graded tensor grid, bent into the solid, each cell cut into six tetrahedra (`grid.rs` explains why six). At the
-//! board its lines follow the inclusions, at the top the contact, and in between they lean. Triangle surfaces:
-//! isosurface stuffing on the body-centred version of the same lattice (`stuffing.rs`).
+//! # How it works
+//!
+//! Blocks and domes are meshed by a graded tensor grid, which is bent into the solid; each cell is
+//! cut into six tetrahedra (`grid.rs` explains why six). At the board the lines of the grid follow
+//! the inclusions, at the top they follow the contact, and between the two they lean. Triangle
+//! surfaces are meshed by isosurface stuffing on the body-centred version of the same lattice
+//! (`stuffing.rs`).
+//!
+//! The reader and writer of Gmsh files are code of our own, because the crate `mshio` reads version
+//! 4.1 only, names no line in its errors, brings twenty crates of old versions (`nom` 5, `num`,
+//! `syn` 1), and writes nothing.
+//!
+//! This crate knows no sensors, materials or solvers: it depends on the crate of shapes alone.
 
 mod axis;
 mod boundary;

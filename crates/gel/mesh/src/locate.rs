@@ -1,4 +1,4 @@
-//! Which tetrahedron holds a point.
+//! Finds the tetrahedron that contains a point.
 
 use glam::DVec3;
 
@@ -6,21 +6,25 @@ use crate::TetMesh;
 use crate::boundary::FACES;
 use crate::tet_mesh::signed_volume_mm3;
 
-/// Smallest tolerance, mm: round-off may put a point on a face outside of both its tetrahedra.
+/// Smallest tolerance, mm: because of round-off, a point on a face may be outside of both of its
+/// tetrahedra.
 const SMALLEST_TOLERANCE_MM: f64 = 1e-9;
 
 impl TetMesh {
-    /// The tetrahedron that holds a point, with the point's barycentric coordinates, which interpolate a nodal field.
+    /// The tetrahedron that contains a point, and the barycentric coordinates of the point, which
+    /// interpolate a nodal field.
     ///
-    /// A point outside, but within `tolerance_mm` of the mesh, is moved to the nearest point of the mesh. None if it is farther out.
-    /// On a shared face, edge or node the tetrahedron with the lowest index is taken.
+    /// A point outside of the mesh, but within `tolerance_mm`, is moved to the nearest point of the
+    /// mesh. `None` if it is farther away. On a shared face, edge or node the tetrahedron with the
+    /// lowest index is taken.
     #[must_use]
     pub fn locate(&self, point_mm: DVec3, tolerance_mm: f64) -> Option<(usize, [f64; 4])> {
         self.neighbourhood(point_mm, tolerance_mm)
             .locate(point_mm, tolerance_mm)
     }
 
-    /// The tetrahedra that a box reaches, which goes so far from its centre along each axis. Points inside are located among them.
+    /// The tetrahedra that touch a box, which extends by `reach_mm` from its centre along each
+    /// axis. Points inside of the box can be located among them.
     #[must_use]
     pub fn neighbourhood(&self, center_mm: DVec3, reach_mm: f64) -> Neighbourhood<'_> {
         let reach = DVec3::splat(reach_mm.max(SMALLEST_TOLERANCE_MM));
@@ -36,7 +40,8 @@ impl TetMesh {
     }
 }
 
-/// Tetrahedra of a mesh near a place, among which points are located faster than in the whole mesh.
+/// Tetrahedra of a mesh near a location. Points are located faster among them than in the whole
+/// mesh.
 #[derive(Clone, Debug)]
 pub struct Neighbourhood<'a> {
     mesh: &'a TetMesh,
@@ -45,7 +50,8 @@ pub struct Neighbourhood<'a> {
 }
 
 impl Neighbourhood<'_> {
-    /// The same as [`TetMesh::locate`], for points so far inside the box that the tolerance does not leave it.
+    /// Like [`TetMesh::locate`], for points whose distance to the sides of the box is larger than
+    /// the tolerance.
     #[must_use]
     pub fn locate(&self, point_mm: DVec3, tolerance_mm: f64) -> Option<(usize, [f64; 4])> {
         let tolerance_mm = tolerance_mm.max(SMALLEST_TOLERANCE_MM);
@@ -76,7 +82,8 @@ fn barycentric([a, b, c, d]: [DVec3; 4], p: DVec3) -> [f64; 4] {
     [[p, b, c, d], [a, p, c, d], [a, b, p, d], [a, b, c, p]].map(|part| signed_volume_mm3(part) / whole)
 }
 
-/// Distance from a point to the surface of a tetrahedron, and the barycentric coordinates of the nearest point there.
+/// Distance from a point to the surface of a tetrahedron, and the barycentric coordinates of the
+/// nearest point there.
 fn nearest_on_surface(corners: [DVec3; 4], point_mm: DVec3) -> (f64, [f64; 4]) {
     let mut nearest = (f64::INFINITY, [0.0; 4]);
     for face in FACES {
@@ -99,7 +106,8 @@ fn nearest_on_surface(corners: [DVec3; 4], point_mm: DVec3) -> (f64, [f64; 4]) {
     nearest
 }
 
-/// Barycentric coordinates of the point of a triangle that is nearest to `p`: its projection, or else the nearest on the edges.
+/// Barycentric coordinates of the point of a triangle that is nearest to `p`: its projection, or
+/// the nearest point of the edges.
 fn nearest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
     let normal = (b - a).cross(c - a);
     let parts = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).cross(p - from).dot(normal));

@@ -1,11 +1,11 @@
-//! Figures of the quality of a mesh.
+//! Measures of the quality of a mesh.
 
 use serde::{Deserialize, Serialize};
 
 use crate::tet_mesh::signed_volume_mm3;
 use crate::{MeshError, TetMesh};
 
-/// The quality of a mesh, to be written beside it.
+/// The quality of a mesh, which is written beside it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quality {
@@ -25,7 +25,8 @@ pub struct Quality {
     pub dihedral_deg: Spread,
     /// Volume of the mesh, mm³.
     pub volume_mm3: f64,
-    /// Relative difference of the mesh's volume to that of the solid without its inclusions; none where that is not known.
+    /// Relative difference between the volume of the mesh and that of the solid without its
+    /// inclusions; `None` if the latter is unknown.
     pub volume_error: Option<f64>,
 }
 
@@ -45,10 +46,11 @@ pub struct Spread {
     pub max: f64,
 }
 
-/// Least volume of a tetrahedron, as part of that of a regular one with the same longest edge.
+/// Smallest volume of a tetrahedron, as a fraction of that of a regular one with the same longest
+/// edge.
 const LEAST_VOLUME_SHARE: f64 = 1e-3;
 
-/// Corners of the edges of a tetrahedron, the opposite edge of each in the same row.
+/// Corners of the edges of a tetrahedron; each row has an edge and the opposite edge.
 const EDGES: [[usize; 4]; 6] = [
     [0, 1, 2, 3],
     [0, 2, 1, 3],
@@ -59,7 +61,8 @@ const EDGES: [[usize; 4]; 6] = [
 ];
 
 impl Quality {
-    /// Measures a mesh of one tetrahedron or more. `solid_volume_mm3` is the volume of the solid without its inclusions, see [`crate::gel_volume_mm3`].
+    /// Measures a mesh of at least one tetrahedron. `solid_volume_mm3` is the volume of the solid
+    /// without its inclusions; see [`crate::gel_volume_mm3`].
     #[must_use]
     pub fn of(mesh: &TetMesh, solid_volume_mm3: Option<f64>) -> Self {
         let volume_mm3 = mesh.volume_mm3();
@@ -78,7 +81,7 @@ impl Quality {
 }
 
 impl Spread {
-    /// The spread of numbers, at least one.
+    /// The distribution of at least one number.
     fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1).expect("a mesh has a tetrahedron");
@@ -94,7 +97,8 @@ impl Spread {
 }
 
 impl TetMesh {
-    /// Fails for a tetrahedron that is inverted or flat: its volume is less than a thousandth of that of a regular one with the same longest edge.
+    /// Fails for a tetrahedron that is inverted or flat: its volume is less than a thousandth of
+    /// that of a regular one with the same longest edge.
     ///
     /// # Errors
     /// [`MeshError::Degenerate`] for the first such tetrahedron.
@@ -103,8 +107,8 @@ impl TetMesh {
     }
 }
 
-/// Fails for a tetrahedron that is inverted or flat: its volume is less than a small part of the volume of a regular tetrahedron with the same
-/// longest edge.
+/// Fails for a tetrahedron that is inverted or flat: its volume is less than `least_share` times
+/// that of a regular tetrahedron with the same longest edge.
 pub(crate) fn check_volumes(mesh: &TetMesh, least_share: f64) -> Result<(), MeshError> {
     for tet in 0..mesh.tets.len() {
         let [a, b, c, d] = mesh.corners_mm(tet);

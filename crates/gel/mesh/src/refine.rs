@@ -1,30 +1,35 @@
-//! Refinement of a mesh: every tetrahedron is cut into eight. Displacements are unknowns on the refined mesh, pressures on the coarse one.
+//! Refinement of a mesh: every tetrahedron is cut into eight. The solver has displacements on the
+//! refined mesh, and pressures on the coarse one.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::TetMesh;
 use crate::tet_mesh::signed_volume_mm3;
 
-/// A mesh with the coarser one that it was cut from.
+/// A refined mesh, and the coarse mesh that it was cut from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
-    /// The refined mesh. Its first nodes are those of the coarse mesh; tetrahedra `8 t` to `8 t + 7` are cut from the coarse one `t`.
+    /// The refined mesh. Its first nodes are those of the coarse mesh; tetrahedra `8 t` to
+    /// `8 t + 7` are cut from the coarse tetrahedron `t`.
     pub mesh: TetMesh,
     /// Nodes of each coarse tetrahedron.
     pub coarse_tets: Vec<[u32; 4]>,
-    /// Nodes of the coarse mesh.
+    /// Number of nodes of the coarse mesh.
     pub n_coarse_nodes: usize,
-    /// The two coarse nodes of each further node, which lies midway between them; the smaller index first. `[n_nodes - n_coarse_nodes]`
+    /// For each further node the two coarse nodes that it is midway between, smaller index first;
+    /// `[n_nodes - n_coarse_nodes]`.
     pub midpoints: Vec<[u32; 2]>,
 }
 
-/// Corners of a tetrahedron that its six midpoints lie between.
+/// Corners of a tetrahedron that are the ends of its six edges.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The four at the corners: a corner and three midpoints, numbered from 4 on in the order of [`EDGES`].
+/// The four tetrahedra at the corners: a corner and three midpoints, which are numbered from 4 in
+/// the order of [`EDGES`].
 const CORNERS: [[usize; 4]; 4] = [[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]];
 
-/// A way to cut the octahedron between them: two opposite midpoints, and the ring of the others.
+/// A way to cut the octahedron that remains: two opposite midpoints, and the ring of the other
+/// four.
 type Diagonal = ([usize; 2], [usize; 4]);
 
 const DIAGONALS: [Diagonal; 3] = [
@@ -34,7 +39,8 @@ const DIAGONALS: [Diagonal; 3] = [
 ];
 
 impl TetMesh {
-    /// Nodes of the mesh that [`TetMesh::refined`] makes: one for each node and each edge.
+    /// Number of nodes of the mesh that [`TetMesh::refined`] makes: one for each node and each
+    /// edge.
     #[must_use]
     pub fn n_nodes_refined(&self) -> usize {
         let edges_of = |tet: &[u32; 4]| EDGES.map(|[a, b]| [tet[a].min(tet[b]), tet[a].max(tet[b])]);
@@ -42,8 +48,10 @@ impl TetMesh {
         self.nodes_mm.len() + edges.len()
     }
 
-    /// Cuts every tetrahedron into eight. The octahedron inside is cut along its shortest diagonal (Bey, Computing 55, 1995, leaves the choice
-    /// open), and of equally short ones along that from the longest edge, so that mirror images are cut alike. A new node is bonded if it lies on a boundary triangle whose corners are.
+    /// Cuts every tetrahedron into eight. The octahedron inside is cut along its shortest diagonal
+    /// (Bey, Computing 55, 1995, leaves the choice open). Of equally short ones, the diagonal from
+    /// the longest edge is taken, so that mirror images are cut in the same way. A new node is
+    /// bonded if it is on a boundary triangle whose corners are all bonded.
     #[must_use]
     pub fn refined(&self) -> Refinement {
         let mut mesh = TetMesh {

@@ -1,4 +1,5 @@
-//! Whether a point is inside a gel that is bounded by a triangle surface, the board and inclusions.
+//! Whether a point is inside of a gel that is bounded by a triangle surface, the board and
+//! inclusions.
 
 use glam::DVec3;
 use twintac_shape::SignedDistance;
@@ -6,12 +7,12 @@ use twintac_shape::SignedDistance;
 use crate::Cuboid;
 use crate::stencil::Side;
 
-/// The gel: inside the surface, above the board and outside the inclusions.
+/// The gel: inside of the surface, above the board and outside of the inclusions.
 pub(crate) struct Region<'a> {
     surface: &'a dyn SignedDistance,
     inclusions: Vec<Cuboid>,
     board_mm: f64,
-    /// Points this close to the boundary are on it.
+    /// Points closer than this to the boundary are on it, mm.
     pub(crate) tolerance_mm: f64,
 }
 
@@ -22,7 +23,8 @@ impl<'a> Region<'a> {
         board_mm: f64,
         tolerance_mm: f64,
     ) -> Self {
-        // Inclusions on the board are extended below it, so that the board bounds the gel there and not their underside.
+        // Inclusions on the board are extended below it, so that the gel is bounded there by the
+        // board and not by their underside.
         let through_board = |c: &Cuboid| {
             let below = if c.min_mm.z <= board_mm + tolerance_mm {
                 DVec3::Z
@@ -42,15 +44,16 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// How far a point is outside (negative: inside), mm. Near the board the surface is continued straight down: the board
-    /// itself is not part of the boundary here, as it is a plane of the lattice.
+    /// Distance of a point from the gel, mm; negative inside. Near the board the surface is
+    /// continued straight down. The board itself is not part of this boundary, because it is a
+    /// plane of the lattice.
     pub(crate) fn outside_mm(&self, point_mm: DVec3) -> f64 {
         let lifted = point_mm.with_z(point_mm.z.max(self.board_mm + 10.0 * self.tolerance_mm));
         let outside_mm = self.surface.signed_distance(lifted).distance_mm;
         outside_mm.max(-self.inclusion_distance_mm(point_mm))
     }
 
-    /// Which side of the boundary a point lies on.
+    /// On which side of the boundary a point is.
     pub(crate) fn side(&self, point_mm: DVec3) -> Side {
         match self.outside_mm(point_mm) {
             outside_mm if outside_mm.abs() <= self.tolerance_mm => Side::On,
@@ -69,7 +72,7 @@ impl<'a> Region<'a> {
         self.inclusion_distance_mm(point_mm).abs() <= 2.0 * self.tolerance_mm
     }
 
-    /// Distance to the nearest inclusion, negative inside; infinite without any.
+    /// Distance to the nearest inclusion, mm; negative inside, infinite without inclusions.
     fn inclusion_distance_mm(&self, point_mm: DVec3) -> f64 {
         self.inclusions
             .iter()
@@ -77,7 +80,7 @@ impl<'a> Region<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The point of the boundary between a point inside and one outside (the Illinois method).
+    /// The point of the boundary between a point inside and one outside (Illinois method).
     pub(crate) fn cut_mm(&self, inside_mm: DVec3, outside_mm: DVec3) -> DVec3 {
         let at = |share: f64| inside_mm.lerp(outside_mm, share);
         let (mut low, mut high) = (
@@ -92,7 +95,7 @@ impl<'a> Region<'a> {
             if value.abs() <= 0.01 * self.tolerance_mm {
                 break;
             }
-            // The value of an end that stays twice is halved.
+            // The value at an end that is kept twice in a row is halved.
             if value < 0.0 {
                 low = (share, value);
                 high.1 *= if kept_low == Some(false) { 0.5 } else { 1.0 };
@@ -106,7 +109,8 @@ impl<'a> Region<'a> {
         at(share)
     }
 
-    /// The point of the boundary near a point, in its horizontal plane, if one is found.
+    /// The point of the boundary near a point, in the same horizontal plane; `None` if it is not
+    /// found.
     pub(crate) fn level_foot_mm(&self, point_mm: DVec3) -> Option<DVec3> {
         let mut foot = point_mm;
         for _ in 0..10 {

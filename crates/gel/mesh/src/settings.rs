@@ -1,4 +1,4 @@
-//! Edge lengths of a mesh, and the boxes that are left out.
+//! Edge lengths of a mesh, and boxes that are left out.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -11,17 +11,21 @@ use crate::MeshError;
 pub struct MeshSettings {
     /// Edge length away from all focuses, inclusions and rounded edges, mm. Default 1.
     pub edge_mm: f64,
-    /// Edge length along z at the pressed surface over `edge_mm`, in (0, 1]. Default 1: no grading towards the surface.
+    /// Edge length along z at the pressed surface, divided by `edge_mm`, in (0, 1]. Default 1: no
+    /// grading towards the surface.
     pub top_edge_ratio: f64,
-    /// Largest ratio of the lengths of neighbouring edges where the mesh coarsens, in [1.05, 2]. Default 1.25.
+    /// Largest ratio of the lengths of neighbouring edges where the mesh coarsens, in [1.05, 2].
+    /// Default 1.25.
     pub growth: f64,
-    /// Where a finer mesh is needed. The lines of the mesh are laid outwards from the centre of the **first** focus, the centre of
-    /// contact. Within its radius the surface pattern depends on its radius and edge length only, not on its position, so that
-    /// moving a press does not change its discretisation.
+    /// Where a finer mesh is needed. The lines of the mesh are built outwards from the centre of
+    /// the **first** focus, which is the centre of contact. Within its radius the surface pattern
+    /// depends on its radius and edge length only, not on its position, so that moving a press does
+    /// not change its discretization.
     pub focuses: Vec<Focus>,
 }
 
-/// A disc, parallel to the board, at which edges are short. They grow by [`MeshSettings::growth`] away from it, along z too.
+/// A disc, parallel to the board, at which edges are short. Away from it, also along z, they grow
+/// by the factor [`MeshSettings::growth`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Focus {
@@ -31,7 +35,8 @@ pub struct Focus {
     pub radius_mm: f64,
     /// Edge length on the disc, mm.
     pub edge_mm: f64,
-    /// Where edges have to be shorter still, along x and along y, as under the rounded rim of a punch.
+    /// Where edges must be shorter still, along x and along y, for example under the rounded rim of
+    /// a punch.
     #[serde(default)]
     pub stretches: [Vec<Stretch>; 2],
 }
@@ -40,7 +45,7 @@ pub struct Focus {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stretch {
-    /// Its middle, from the centre of its focus, mm.
+    /// Its middle, relative to the centre of its focus, mm.
     pub offset_mm: f64,
     /// Half its length, mm.
     pub reach_mm: f64,
@@ -48,7 +53,8 @@ pub struct Stretch {
     pub edge_mm: f64,
 }
 
-/// A box of something rigid inside the gel, its faces parallel to the axes. What lies outside the solid is ignored.
+/// A rigid box inside of the gel, with faces parallel to the axes. The part outside of the solid is
+/// ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cuboid {
@@ -70,7 +76,7 @@ impl Default for MeshSettings {
 }
 
 impl MeshSettings {
-    /// The same distribution of edge lengths, all of them multiplied by `factor`.
+    /// The same distribution of edge lengths, all multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut scaled = self.clone();
@@ -125,7 +131,8 @@ impl Cuboid {
         beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
     }
 
-    /// Checks that this is a box that overlaps a solid and has gel above it, where the solid is whole up to some height.
+    /// Checks that this is a box that overlaps a solid and has gel above it; the solid fills its
+    /// footprint up to `whole_to_mm`.
     pub(crate) fn check(
         &self,
         index: usize,
@@ -151,7 +158,7 @@ impl Cuboid {
     }
 }
 
-/// Checks that a number lies in a range; NaN does not.
+/// Checks that a number is in a range; NaN is not.
 pub(crate) fn within(field: &str, value: f64, least: f64, most: f64) -> Result<(), MeshError> {
     if (least..=most).contains(&value) {
         return Ok(());

@@ -1,14 +1,16 @@
-//! The wanted edge length along one axis.
+//! The requested edge length along one axis.
 
 use crate::MeshError;
 
-/// Lines that one axis may have.
+/// Largest number of lines of an axis.
 const MOST_LINES: usize = 4096;
 
-/// The edge length as a function of one coordinate: short near some positions, growing linearly away from them up to a largest one.
+/// The edge length as a function of one coordinate: short near some positions, and growing linearly
+/// away from them up to a largest value.
 pub(crate) struct SizeField {
     edge_mm: f64,
-    /// Growth of the edge length per length: cells of a length that grows with slope `s` grow by `exp(s)` from one to the next.
+    /// Derivative of the edge length by the coordinate. Cells whose length grows with slope `s`
+    /// grow by the factor `exp(s)` from one to the next.
     slope: f64,
     pits: Vec<Pit>,
 }
@@ -38,7 +40,7 @@ impl SizeField {
         });
     }
 
-    /// Limits edges so that there is a cell between every two of these planes (sorted).
+    /// Limits edges so that there is a cell between any two of these planes, which are sorted.
     pub(crate) fn separate(&mut self, planes_mm: &[f64]) {
         for pair in planes_mm.windows(2) {
             let gap_mm = pair[1] - pair[0];
@@ -52,16 +54,17 @@ impl SizeField {
         })
     }
 
-    /// Appends the planes that divide `[from, to]` into cells of the wanted length, without `from` and with `to`.
+    /// Appends the planes that divide `[from, to]` into cells of the requested length, without
+    /// `from` and with `to`.
     pub(crate) fn divide(&self, from_mm: f64, to_mm: f64, planes_mm: &mut Vec<f64>) -> Result<(), MeshError> {
         const SAMPLES: usize = 512;
         let step_mm = (to_mm - from_mm) / SAMPLES as f64;
-        // Cells to the left of each sample: the integral of one over the edge length.
+        // Number of cells to the left of each sample: the integral of the inverse edge length.
         let mut cells = [0.0; SAMPLES + 1];
         for i in 0..SAMPLES {
             cells[i + 1] = cells[i] + step_mm / self.edge_mm(from_mm + (i as f64 + 0.5) * step_mm);
         }
-        // Rather a little too short than much too long.
+        // A cell that is a little too short is better than one that is much too long.
         let n_cells = (cells[SAMPLES] - 0.25).ceil().max(1.0) as usize;
         if n_cells > MOST_LINES {
             return Err(MeshError::TooFine {

@@ -1,8 +1,8 @@
-//! The inner part of a tetrahedron that a surface cuts.
+//! The part of a tetrahedron inside of a surface that cuts it.
 
 use glam::DVec3;
 
-/// Where a corner lies.
+/// Position of a corner relative to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Inside,
@@ -10,13 +10,15 @@ pub(crate) enum Side {
     Outside,
 }
 
-/// A corner of the inner part: a number that is the same for all tetrahedra around it, and its position.
+/// A corner of the inner part: a number that is the same in all tetrahedra around it, and its
+/// position, mm.
 pub(crate) type Corner = (u32, DVec3);
 
-/// Cuts the inner part of a tetrahedron into tetrahedra that are oriented like it.
+/// Divides the inner part of a tetrahedron into tetrahedra with the same orientation.
 ///
-/// `cut(a, b)` gives the point where the edge between corners `a` (inside) and `b` (outside) is cut. Faces that two tetrahedra share are
-/// cut alike in both. `center` makes a new corner for the rare part that has no cut without one.
+/// `cut(a, b)` gives the point where the edge between corners `a` (inside) and `b` (outside) is
+/// cut. A face that two tetrahedra share is divided in the same way in both. `center` makes a new
+/// corner, which is rarely needed, for a part that cannot be divided without one.
 pub(crate) fn inner_part(
     corners: [Corner; 4],
     sides: [Side; 4],
@@ -35,7 +37,7 @@ pub(crate) fn inner_part(
         ([], ..) => {}
         (_, _, []) => push(corners, true, out),
         (&[a], _, _) => {
-            // The corners outside are pulled in along their edges.
+            // The corners outside are moved inwards along their edges.
             push(
                 [0, 1, 2, 3].map(|c| {
                     if sides[c] == Side::Outside {
@@ -71,12 +73,13 @@ pub(crate) fn inner_part(
                 out,
             );
         }
-        // With four corners there is no other case.
+        // Four corners leave no other case.
         _ => {}
     }
 }
 
-/// The two triangles of a quadrilateral: divided by the shorter diagonal, of equal ones by that with the lowest number.
+/// The two triangles of a quadrilateral, divided by the shorter diagonal. Of equal ones, the
+/// diagonal with the lowest number is taken.
 fn halves(quad: [Corner; 4]) -> [[Corner; 3]; 2] {
     let [a, b, c, d] = quad;
     let (ac, bd) = (a.1.distance_squared(c.1), b.1.distance_squared(d.1));
@@ -93,8 +96,9 @@ fn halves(quad: [Corner; 4]) -> [[Corner; 3]; 2] {
     }
 }
 
-/// Cuts a prism between two triangles, corner by corner, into three tetrahedra, or eight around its centre if need be. `even` where
-/// the bottom and a corner of the top are oriented like the tetrahedron that is cut.
+/// Divides a prism between two triangles, given corner by corner, into three tetrahedra, or into
+/// eight around its centre if necessary. `even` states that the bottom and a corner of the top are
+/// oriented like the tetrahedron that is cut.
 fn prism(
     bottom: [Corner; 3],
     top: [Corner; 3],
@@ -106,7 +110,8 @@ fn prism(
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
         triangles.extend(halves([bottom[i], bottom[j], top[j], top[i]]));
     }
-    // A corner that both its quadrilaterals are divided from is in five triangles; the three others face it.
+    // A corner at which both of its quadrilaterals are divided is in five triangles; the other
+    // three triangles face it.
     let touching = |corner: Corner| {
         triangles
             .iter()
@@ -125,13 +130,13 @@ fn prism(
     }
 }
 
-/// Whether an order of the corners has the orientation of `[0, 1, 2, 3]`.
+/// Whether an order of the corners is an even permutation of `[0, 1, 2, 3]`.
 fn is_even([a, b, c, d]: [usize; 4]) -> bool {
     let swaps = [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)];
     swaps.iter().filter(|(first, second)| first > second).count() % 2 == 0
 }
 
-/// Adds a tetrahedron, turned over unless `even`.
+/// Adds a tetrahedron, with the opposite orientation unless `even`.
 fn push(corners: [Corner; 4], even: bool, out: &mut Vec<[u32; 4]>) {
     let [a, b, c, d] = corners.map(|corner| corner.0);
     out.push(if even { [a, b, c, d] } else { [a, b, d, c] });

@@ -2,10 +2,12 @@
 
 use crate::TetMesh;
 
-/// Bytes before the number of triangles; must not start with "solid", which would mean text.
+/// Bytes before the number of triangles. They must not start with "solid", which would mean a text
+/// file.
 const HEADER: &[u8; 80] = b"boundary of a tetrahedral mesh, mm                                              ";
 
-/// Boundary triangles with outward normals: 80 bytes of header, their number, 50 bytes each, little-endian, lengths in mm.
+/// Boundary triangles with outward normals: 80 bytes of header, number of triangles, 50 bytes for
+/// each, little-endian, lengths in mm.
 #[must_use]
 pub fn write(mesh: &TetMesh) -> Vec<u8> {
     let triangles = mesh.boundary_triangles();

@@ -1,9 +1,11 @@
-//! Meshes of triangle surfaces by isosurface stuffing (Labelle & Shewchuk 2007, "Isosurface stuffing: fast tetrahedral meshes with
-//! good dihedral angles").
+//! Meshes of triangle surfaces by isosurface stuffing (Labelle & Shewchuk 2007, "Isosurface
+//! stuffing: fast tetrahedral meshes with good dihedral angles").
 //!
-//! A body-centred lattice fills the surface's box; lattice points close to where the surface cuts their edges are moved onto it, and
-//! the tetrahedra that are still cut keep their inner parts. Here the lattice is stretched to be fine where the settings ask for it, and ends
-//! at the board: there the tetrahedra are halves, and points move within the board's plane only.
+//! A body-centred lattice fills the box of the surface. Lattice points close to where the surface
+//! cuts their edges are moved onto the surface; of the tetrahedra that are still cut, the inner
+//! part is kept. Here the lattice is also graded to be fine where the settings require it, and it
+//! ends at the board: the tetrahedra there are halves, and their points move within the plane of
+//! the board only.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +16,8 @@ use crate::region::Region;
 use crate::stencil::{Side, inner_part};
 use crate::{MeshError, TetMesh};
 
-/// A lattice point moves to a cut that is nearer than this part of the edge (section 4.1 there): long edges, short edges.
+/// A lattice point moves to a cut that is nearer than this fraction of the edge (section 4.1 of the
+/// paper): long edges, short edges.
 const TOO_NEAR: [f64; 2] = [0.24999, 0.41189];
 
 /// The lattice's points and tetrahedra.
@@ -25,7 +28,7 @@ struct Background {
     tets: Vec<[u32; 4]>,
 }
 
-/// Meshes the inside of a region. The lattice covers the region's box.
+/// Meshes the interior of a region. The lattice covers the box of the region.
 pub(crate) fn mesh(lattice: &Lattice, region: &Region) -> Result<TetMesh, MeshError> {
     let mut background = background(lattice);
     let mut sides: Vec<Side> = background
@@ -74,7 +77,7 @@ pub(crate) fn mesh(lattice: &Lattice, region: &Region) -> Result<TetMesh, MeshEr
     Ok(mesh)
 }
 
-/// The body-centred lattice: one cell wider than the given one on all sides but the board's.
+/// The body-centred lattice: one cell wider than the given one on all sides except at the board.
 fn background(lattice: &Lattice) -> Background {
     let [nx, ny, nz] = lattice.points();
     let size = [nx + 2, ny + 2, nz + 1];
@@ -103,7 +106,8 @@ fn background(lattice: &Lattice) -> Background {
     }
     let n_with_cells = points_mm.len();
     let mut tets = Vec::new();
-    // Around the line between two neighbours (cell centres, or a cell's centre and the middle of its face on the board).
+    // The four tetrahedra around the line between two neighbours: cell centres, or the centre of a
+    // cell and the middle of its face on the board.
     let mut ring = |ends: [usize; 2], face: [[usize; 3]; 4]| {
         for side in 0..4 {
             let [p, q] = [face[side], face[(side + 1) % 4]].map(&corner);
@@ -147,7 +151,8 @@ fn background(lattice: &Lattice) -> Background {
     }
 }
 
-/// Position of a lattice point, numbered from one cell outside the given lattice in x and y.
+/// Position of a lattice point, whose index starts one cell outside of the given lattice in x and
+/// y.
 fn outer_position_mm(lattice: &Lattice, [i, j, k]: [usize; 3]) -> DVec3 {
     let [nx, ny, nz] = lattice.points();
     let inner = [i.clamp(1, nx) - 1, j.clamp(1, ny) - 1, k.min(nz - 1)];
@@ -170,7 +175,7 @@ fn outer_position_mm(lattice: &Lattice, [i, j, k]: [usize; 3]) -> DVec3 {
     position_mm
 }
 
-/// Edges from inside to outside, sorted.
+/// Edges between a point inside and one outside, sorted.
 fn cut_edges(tets: &[[u32; 4]], sides: &[Side]) -> Vec<[u32; 2]> {
     let mut edges = Vec::new();
     for nodes in tets {
@@ -199,7 +204,7 @@ fn cut_mm(background: &Background, sides: &[Side], region: &Region, [a, b]: [u32
     }
 }
 
-/// Moves points onto cuts that are too near to them.
+/// Moves lattice points onto cuts that are too near to them.
 fn move_points(
     background: &mut Background,
     sides: &mut [Side],
@@ -207,7 +212,7 @@ fn move_points(
     edges: &[[u32; 2]],
     cuts_mm: &[DVec3],
 ) {
-    // For each point its cut edges, the nearest cut (relative to the edge's length) first.
+    // The cut edges of each point, nearest cut (relative to the length of the edge) first.
     let mut near: BTreeSet<(u32, u64, usize)> = BTreeSet::new();
     for (place, &[a, b]) in edges.iter().enumerate() {
         let [a_mm, b_mm] = [a, b].map(|node| background.points_mm[node as usize]);
@@ -215,7 +220,7 @@ fn move_points(
         for (node, node_mm) in [(a, a_mm), (b, b_mm)] {
             let share = cuts_mm[place].distance(node_mm) / a_mm.distance(b_mm);
             if share < TOO_NEAR[usize::from(is_short)] {
-                // Positive numbers are ordered like their bits.
+                // The bits of positive numbers have the same order as the numbers.
                 near.insert((node, share.to_bits(), place));
             }
         }
@@ -225,7 +230,7 @@ fn move_points(
         let [a, b] = edges[place];
         let other = if node == a { b } else { a };
         let node = node as usize;
-        // A cut is gone once one of its ends has moved onto the surface.
+        // An edge is no longer cut once one of its ends has moved onto the surface.
         if sides[node] == Side::On || sides[other as usize] == Side::On {
             continue;
         }
@@ -250,7 +255,8 @@ fn move_points(
     }
 }
 
-/// How far points may move along the board, mm: three of them that move onto a wall must not become collinear.
+/// How far points may move along the board, mm: three of them that move onto a wall must not become
+/// collinear.
 fn board_reach_mm(background: &Background) -> Vec<f64> {
     let mut reach_mm = vec![f64::INFINITY; background.points_mm.len()];
     for nodes in &background.tets {

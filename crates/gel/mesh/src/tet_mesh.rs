@@ -8,22 +8,23 @@ use crate::boundary::outward_triangles;
 /// Linear tetrahedra with positive volume: for each, `(b - a) × (c - a) · (d - a) > 0`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TetMesh {
-    /// Node positions at rest, mm.
+    /// Positions of the nodes in the undeformed state, mm.
     pub nodes_mm: Vec<DVec3>,
     /// Node indices of each tetrahedron.
     pub tets: Vec<[u32; 4]>,
-    /// The bonded, free and pressed nodes.
+    /// Named sets of nodes: bonded, free, pressed.
     pub sets: NodeSets,
 }
 
 /// Named sets of nodes, each sorted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NodeSets {
-    /// Nodes glued to something rigid: the board at z = 0 and the faces of inclusions.
+    /// Nodes that are glued to something rigid: the board at z = 0, and the faces of inclusions.
     pub bonded: Vec<u32>,
     /// Boundary nodes that are not bonded.
     pub free: Vec<u32>,
-    /// Free nodes on the surface that is pressed: they touch a facet whose outward normal is within 60° of +z.
+    /// Free nodes on the surface that is pressed: those at a facet whose outward normal is within
+    /// 60° of +z.
     pub top: Vec<u32>,
 }
 
@@ -46,7 +47,7 @@ impl TetMesh {
         (0..self.tets.len()).map(|tet| self.tet_volume_mm3(tet)).sum()
     }
 
-    /// Volume that belongs to each node, a quarter of each tetrahedron around it, mm³. `[n_nodes]`
+    /// Volume of each node: a quarter of each tetrahedron around it, mm³; `[n_nodes]`.
     #[must_use]
     pub fn node_volumes_mm3(&self) -> Vec<f64> {
         let mut volumes_mm3 = vec![0.0; self.nodes_mm.len()];
@@ -59,19 +60,21 @@ impl TetMesh {
         volumes_mm3
     }
 
-    /// Triangles of the boundary, their corners counter-clockwise seen from outside, in the order of the tetrahedra that own them.
+    /// Triangles of the boundary, with corners counterclockwise seen from outside, in the order of
+    /// their tetrahedra.
     #[must_use]
     pub fn boundary_triangles(&self) -> Vec<[u32; 3]> {
         outward_triangles(&self.tets, self.nodes_mm.len())
     }
 
-    /// Boundary area that belongs to each node, a third of each triangle around it; zero inside. mm², `[n_nodes]`
+    /// Boundary area of each node: a third of each triangle around it, and zero inside, mm²;
+    /// `[n_nodes]`.
     #[must_use]
     pub fn node_areas_mm2(&self) -> Vec<f64> {
         self.node_areas_of_mm2(&self.boundary_triangles())
     }
 
-    /// Area that belongs to each node counting only these triangles, mm². `[n_nodes]`
+    /// Area of each node if only these triangles count, mm²; `[n_nodes]`.
     #[must_use]
     fn node_areas_of_mm2(&self, triangles: &[[u32; 3]]) -> Vec<f64> {
         let mut areas_mm2 = vec![0.0; self.nodes_mm.len()];
@@ -84,14 +87,15 @@ impl TetMesh {
         areas_mm2
     }
 
-    /// Outward normal of a boundary triangle, its length the area, mm².
+    /// Outward normal of a boundary triangle, with the area as its length, mm².
     #[must_use]
     pub fn area_vector_mm2(&self, triangle: &[u32; 3]) -> DVec3 {
         let [a, b, c] = triangle.map(|node| self.nodes_mm[node as usize]);
         0.5 * (b - a).cross(c - a)
     }
 
-    /// Also bonds the boundary nodes within a tolerance of an inclusion: an imported mesh does not say which those are.
+    /// Additionally bonds the boundary nodes within a tolerance of an inclusion, because an
+    /// imported mesh does not state which these are.
     pub fn bond_to(&mut self, inclusions: &[Cuboid], tolerance_mm: f64) {
         let bonded = std::mem::take(&mut self.sets.bonded);
         let is_near: Vec<bool> = self
@@ -106,7 +110,7 @@ impl TetMesh {
         self.name_nodes(|node| is_near[node as usize] || bonded.binary_search(&node).is_ok());
     }
 
-    /// Sets the node sets: of the boundary's nodes, those that are bonded, and the rest.
+    /// Sets the node sets: the bonded nodes of the boundary, and the rest of the boundary.
     pub(crate) fn name_nodes(&mut self, is_bonded: impl Fn(u32) -> bool) {
         let triangles = self.boundary_triangles();
         let mut on_boundary = vec![false; self.nodes_mm.len()];
@@ -129,7 +133,7 @@ impl TetMesh {
     }
 }
 
-/// Volume of a tetrahedron, negative where its orientation is wrong, mm³.
+/// Volume of a tetrahedron, mm³; negative if its orientation is wrong.
 pub(crate) fn signed_volume_mm3([a, b, c, d]: [DVec3; 4]) -> f64 {
     (b - a).cross(c - a).dot(d - a) / 6.0
 }

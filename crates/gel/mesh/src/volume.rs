@@ -5,14 +5,15 @@ use twintac_shape::{Solid, Surfaces};
 
 use crate::Cuboid;
 
-/// Volume of a solid without its inclusions, mm³. Exact unless inclusions reach through a curved surface.
+/// Volume of a solid without its inclusions, mm³. It is exact unless inclusions reach through a
+/// curved surface.
 #[must_use]
 pub fn gel_volume_mm3(solid: &Solid, surfaces: &Surfaces, inclusions: &[Cuboid]) -> f64 {
     let (low_mm, high_mm) = solid.bounds_mm(surfaces);
     solid.volume_mm3(surfaces) - union_volume_mm3(inclusions, [low_mm, high_mm])
 }
 
-/// Volume that boxes, which may overlap, take up within bounds, mm³.
+/// Volume of boxes within bounds, mm³; boxes may overlap.
 fn union_volume_mm3(cuboids: &[Cuboid], [low, high]: [DVec3; 2]) -> f64 {
     let clipped: Vec<[DVec3; 2]> = cuboids
         .iter()

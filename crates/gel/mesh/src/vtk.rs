@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use crate::{MeshError, TetMesh};
 
-/// A named field over the nodes or the tetrahedra. Put the unit in the name.
+/// A named field over the nodes or the tetrahedra. Its name should include the unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Field<'a> {
-    /// Name, as it appears in ParaView.
+    /// Name, as shown by ParaView.
     pub name: &'a str,
     /// One value for each node or tetrahedron.
     pub values: Values<'a>,
@@ -18,26 +18,28 @@ pub struct Field<'a> {
 /// Values of a field.
 #[derive(Clone, Copy, Debug)]
 pub enum Values<'a> {
-    /// A number each.
+    /// A number for each.
     Scalar(&'a [f64]),
-    /// A vector each.
+    /// A vector for each.
     Vector(&'a [DVec3]),
 }
 
-/// VTK's kind of a tetrahedron with 4 nodes.
+/// VTK's cell type of a tetrahedron with 4 nodes.
 const VTK_TETRA: &str = "10";
 
-/// The mesh and its fields as an XML text file (VTK file formats, "UnstructuredGrid"). Coordinates in mm.
+/// The mesh and its fields as an XML text file (VTK file formats, "UnstructuredGrid"). Coordinates
+/// are in mm.
 ///
 /// # Errors
-/// A field with a number of values other than that of nodes or tetrahedra, or with a value that is not finite.
+/// A field whose number of values is not that of the nodes or tetrahedra, or with a value that is
+/// not finite.
 pub fn write(mesh: &TetMesh, node_fields: &[Field], tet_fields: &[Field]) -> Result<String, MeshError> {
     let (n_nodes, n_tets) = (mesh.nodes_mm.len(), mesh.tets.len());
     for (fields, expected) in [(node_fields, n_nodes), (tet_fields, n_tets)] {
         fields.iter().try_for_each(|field| field.check(expected))?;
     }
     let mut text = String::new();
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     let _ = write_to(&mut text, mesh, node_fields, tet_fields);
     Ok(text)
 }

@@ -1,4 +1,4 @@
-//! What every generated mesh must be.
+//! Properties that every generated mesh must have.
 
 #![allow(clippy::unwrap_used)]
 
@@ -15,7 +15,7 @@ use twintac_mesh::{
 };
 use twintac_shape::{Dome, SignedDistance, Solid, SurfaceFile, Surfaces, TriangleSurface};
 
-/// The closed surface of the part of a ball above the board, of fine facets.
+/// The closed surface of the part of a ball above the board, with fine facets.
 fn sunk_ball(radius_mm: f64, center_mm: DVec3) -> TriangleSurface {
     const AROUND: usize = 40;
     const UP: usize = 20;
@@ -94,7 +94,8 @@ fn mesh_of(solid: &Solid, inclusions: &[Cuboid], settings: &MeshSettings) -> Tet
     generate(solid, &Surfaces::new(), inclusions, settings).unwrap()
 }
 
-/// Volumes, a closed boundary that faces out, sorted node sets that divide the boundary.
+/// Checks volumes, that the boundary is closed and faces outwards, and that sorted node sets divide
+/// the boundary.
 fn assert_sound(mesh: &TetMesh) {
     assert!((0..mesh.tets.len()).all(|tet| mesh.tet_volume_mm3(tet) > 0.0));
     let triangles = mesh.boundary_triangles();
@@ -108,7 +109,7 @@ fn assert_sound(mesh: &TetMesh) {
     assert!(edges.values().all(|&count| count == 0), "the boundary has a hole");
     let area: DVec3 = triangles.iter().map(|t| mesh.area_vector_mm2(t)).sum();
     assert!(area.length() < 1e-9 * mesh.node_areas_mm2().iter().sum::<f64>());
-    // The divergence theorem ties orientation to volume.
+    // The divergence theorem relates orientation to volume.
     let enclosed: f64 = triangles
         .iter()
         .map(|t| mesh.area_vector_mm2(t).dot(mesh.nodes_mm[t[0] as usize]) / 3.0)
@@ -152,7 +153,7 @@ fn chips_leave_holes_with_bonded_walls() {
             "{at}"
         );
     }
-    // A port on a chip's top lies on the mesh, and so does its rim.
+    // A port on a chip's top is on the mesh, and so is its rim.
     for offset in [DVec3::ZERO, DVec3::X * 0.5, DVec3::new(-0.4, 0.4, 0.0)] {
         let point = DVec3::new(-12.0, 0.0, 1.1) + offset;
         let (tet, weights) = mesh.locate(point, 1e-6).unwrap();
@@ -237,7 +238,7 @@ fn edges_are_as_short_as_asked_and_grow_gently() {
         &[],
         &focused(1.5, center_mm, 2.0, 0.4),
     );
-    // Along the surface's line through the centre.
+    // Along the line of the surface through the centre.
     let mut line: Vec<f64> = mesh
         .nodes_mm
         .iter()
@@ -317,7 +318,7 @@ fn typical_meshes_are_good() {
     let tip = focused(1.5, DVec3::new(3.3, 0.2, 6.0), 2.0, 0.4);
     let uniform = MeshSettings::default();
     let paper = block([34.0, 18.0, 8.5], 0.0);
-    // Smallest dihedral angle and volume error that are accepted.
+    // The last two columns: smallest dihedral angle and largest volume error that are accepted.
     for (solid, inclusions, settings, n_nodes, least_deg, most_error) in [
         (&strip, &chips[..], &tip, 3000, 9.0, 1e-9),
         (&paper, &[], &uniform, 1500, 40.0, 1e-9),
@@ -409,7 +410,8 @@ fn any_solid() -> impl Strategy<Value = Solid> {
     prop_oneof![blocks, domes]
 }
 
-/// Up to three separate boxes in the lower gel, their places and sizes as shares of a cell each of a row.
+/// Up to three separate boxes in the lower gel. Their positions and sizes are fractions of a cell
+/// of a row, one cell for each box.
 fn any_chips() -> impl Strategy<Value = Vec<Cuboid>> {
     let chip = (
         0.05..0.4,
@@ -452,10 +454,11 @@ fn any_settings() -> impl Strategy<Value = MeshSettings> {
     )
 }
 
-/// Part of a regular tetrahedron's volume below which the generator takes a tetrahedron for flat.
+/// Fraction of a regular tetrahedron's volume below which the generator treats a tetrahedron as
+/// flat.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Shortest and longest edge that is asked for, mm.
+/// Shortest and longest edge that is requested, mm.
 fn edge_range_mm(settings: &MeshSettings) -> [f64; 2] {
     let edges_mm = settings.focuses.iter().map(|focus| focus.edge_mm);
     edges_mm.fold([settings.edge_mm; 2], |[low, high], edge| {
@@ -463,12 +466,12 @@ fn edge_range_mm(settings: &MeshSettings) -> [f64; 2] {
     })
 }
 
-/// Faces of inclusions closer than this are merged, mm.
+/// Faces of inclusions that are closer than this are merged, mm.
 fn merging_mm(settings: &MeshSettings) -> f64 {
     0.05 * edge_range_mm(settings)[0]
 }
 
-/// The most that merged faces can change in the volume of chips, mm³: every face moves out.
+/// Largest change of the volume of chips by merged faces, mm³: every face moves outwards.
 fn merged_faces_mm3(chips: &[Cuboid], settings: &MeshSettings) -> f64 {
     let grown_mm3 = |chip: &Cuboid| {
         let size_mm = chip.max_mm - chip.min_mm;
@@ -477,18 +480,20 @@ fn merged_faces_mm3(chips: &[Cuboid], settings: &MeshSettings) -> f64 {
     chips.iter().map(grown_mm3).sum()
 }
 
-/// The most that flat facets, an edge and a quarter long, can cut off a curved top, mm³.
+/// Largest volume that flat facets, an edge and a quarter long, can cut off a curved top, mm³.
 fn facets_mm3(solid: &Solid, settings: &MeshSettings) -> f64 {
     let e = 1.25 * edge_range_mm(settings)[1];
     match solid {
-        // A node lies in the middle of each rounded edge. Chords of its halves, which turn by 45°, cut off at most e²/4 tan 22.5° of a
-        // half's cross-section; and at most the triangle r tan 22.5° high whose legs are that long and e.
+        // A node is in the middle of each rounded edge. The chords of its halves, which turn by
+        // 45°, cut at most e²/4 tan 22.5° off the cross-section of a half, and at most the triangle
+        // with the height r tan 22.5° whose legs are that long and e.
         Solid::Block {
             size_mm,
             edge_radius_mm,
             ..
         } => 4.0 * (size_mm[0] + size_mm[1]) * e * (0.104 * e).min(0.147 * edge_radius_mm),
-        // A quadratic fall c s² is cut off by c e²/6 on average; the facet across the crown may belong to either side.
+        // A quadratic fall c s² loses c e²/6 on average; the facet across the crown may belong to
+        // either side.
         Solid::Dome(dome) => {
             let side = |ends: [f64; 2], crown: f64, drops: [f64; 2]| -> f64 {
                 let cut_mm2 = |end: f64, drop_mm: f64| {
@@ -505,9 +510,10 @@ fn facets_mm3(solid: &Solid, settings: &MeshSettings) -> f64 {
     }
 }
 
-/// How flat cells between faces of chips that lie almost in line can be: a cell `a` long and `b` and `c` thick consists of tetrahedra with
-/// √2 bc/a² of the volume of regular ones. Lines move by half a cell at most, so that `a` is at most twice what was asked for; cells beside
-/// a gap are at least half as thick as it is.
+/// How flat cells can be between faces of chips that are almost aligned. A cell with length `a` and
+/// thicknesses `b` and `c` consists of tetrahedra with √2 bc/a² of the volume of regular ones.
+/// Lines move by half a cell at most, so that `a` is at most twice the requested length; cells
+/// beside a gap are at least half as thick as the gap.
 fn flattest_share([low_mm, high_mm]: [DVec3; 2], chips: &[Cuboid], settings: &MeshSettings) -> f64 {
     let [shortest_mm, longest_mm] = edge_range_mm(settings);
     let thinnest_mm = |axis: usize| {
@@ -529,7 +535,7 @@ fn flattest_share([low_mm, high_mm]: [DVec3; 2], chips: &[Cuboid], settings: &Me
 }
 
 proptest! {
-    // PROPTEST_CASES and PROPTEST_RNG_SEED try more and others.
+    // PROPTEST_CASES and PROPTEST_RNG_SEED set the number of cases and the seed.
     #![proptest_config(ProptestConfig {
         failure_persistence: None,
         rng_seed: RngSeed::Fixed(1),
@@ -547,7 +553,7 @@ proptest! {
                 prop_assert!(error_mm3 < most_mm3 + 1e-9 * expected_mm3, "{} {}", error_mm3, most_mm3);
                 prop_assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes(), 1.0).unwrap(), mesh);
             }
-            // A chip of 1.5 mm may reach into the rounding of a low block.
+            // A chip of 1.5 mm may extend into the rounding of a low block.
             Err(MeshError::Inclusion { .. }) => {}
             Err(MeshError::Degenerate { .. }) => {
                 let (low_mm, high_mm) = solid.bounds_mm(&Surfaces::new());
@@ -582,7 +588,8 @@ proptest! {
         let is_met = |found: usize| 10 * found.abs_diff(n_nodes) <= n_nodes;
         match generate_with_node_count(&solid, &Surfaces::new(), &[], &settings, n_nodes) {
             Ok((mesh, _)) => prop_assert!(is_met(mesh.nodes_mm.len())),
-            // About one in a thousand: the number jumps over all that would do. It does so at every factor from coarse to fine.
+            // About one case in a thousand: the number of nodes jumps over the accepted range, at
+            // every factor from coarse to fine.
             Err(MeshError::NodeCount { nearest, .. }) => {
                 let counts: Vec<usize> = (0..)
                     .map(|step| settings.scaled(8.0 * 0.999_f64.powi(step)))
@@ -605,12 +612,13 @@ proptest! {
             Ok(mesh) => {
                 assert_sound(&mesh);
                 let quality = Quality::of(&mesh, Some(gel_volume_mm3(&solid, &surfaces, &[])));
-                // Regular facets of edge e, here 1.26 times the wanted one, lie e²/(8 r) below a ball on average, which takes three
-                // times that over r of its volume.
+                // Regular facets of edge e, here 1.26 times the requested one, are e²/(8 r) below a
+                // ball on average, which removes three times that, divided by r, of its volume.
                 let thin_mm = radius_mm.min(radius_mm + center_mm.z);
                 let facets = 0.6 * settings.edge_mm.powi(2) / (radius_mm * thin_mm);
                 prop_assert!(quality.volume_error.unwrap().abs() < facets, "{:?}", quality);
-                // Stuffing a lattice of cubes leaves 10.7°, halving it at the board 4°. Stretching divides a tangent by its ratio at most.
+                // Stuffing a lattice of cubes gives at least 10.7°; halving it at the board gives
+                // 4°. Stretching divides a tangent by its ratio at most.
                 let [shortest_mm, longest_mm] = edge_range_mm(&settings);
                 let stretch = 1.25 * longest_mm / shortest_mm.min(settings.edge_mm * settings.top_edge_ratio);
                 let least_deg = (10.7_f64.to_radians().tan() / stretch).atan().to_degrees().min(4.0);
@@ -633,7 +641,8 @@ proptest! {
                         Ok(with_chips) => assert_sound(&with_chips),
                         Err(MeshError::Degenerate { .. }) => {
                             let (low_mm, high_mm) = solid.bounds_mm(&surfaces);
-                            // The longest cells that are tried; twelve tetrahedra each, not six.
+                            // The longest cells that are tried; twelve tetrahedra for each, not
+                            // six.
                             let share = 0.5 * flattest_share([low_mm, high_mm], &chips, &settings.scaled(1.06 * 2_f64.cbrt()));
                             prop_assert!(share < LEAST_SHARE);
                         }

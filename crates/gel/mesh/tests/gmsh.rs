@@ -1,11 +1,11 @@
-//! Gmsh files: every version and encoding, and damage of every kind.
+//! Gmsh files of every version and encoding, and with every kind of damage.
 
 #![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
 use twintac_mesh::{MeshError, TetMesh, gmsh};
 
-/// A numbers' encoding to write a test file in.
+/// The encoding of numbers in a test file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Encoding {
     Text,
@@ -169,7 +169,7 @@ fn a_written_mesh_comes_back_bit_for_bit() {
     assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes(), 1.0).unwrap(), mesh);
 }
 
-/// Changes a text file and returns the message that it is refused with.
+/// Changes a text file, and returns the message of the error.
 fn refusal(from: &str, to: &str) -> String {
     let text = String::from_utf8(version_2(Encoding::Text)).unwrap();
     assert!(text.contains(from), "{from} is not in the file");
@@ -212,7 +212,7 @@ fn damage_is_named_with_its_place() {
     ));
 }
 
-/// A text file of these nodes, numbered from 1, and elements: kind, entity, nodes.
+/// A text file of these nodes, numbered from 1, and elements: type, entity, nodes.
 fn file_of(nodes: &[[f64; 3]], elements: &[(i64, i64, &[usize])]) -> String {
     let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", nodes.len());
     for (index, [x, y, z]) in nodes.iter().enumerate() {
@@ -226,7 +226,8 @@ fn file_of(nodes: &[[f64; 3]], elements: &[(i64, i64, &[usize])]) -> String {
     text + "$EndElements\n"
 }
 
-/// A box of five tetrahedra, with its lowest corner here: nodes, and tetrahedra by nodes from `first` on.
+/// A box of five tetrahedra with its lowest corner at `low`: nodes, and tetrahedra given by node
+/// numbers that start at `first`.
 fn box_of(low: [f64; 3], size: [f64; 3], first: usize) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
     let corner = |bits: usize| [0, 1, 2].map(|axis| low[axis] + size[axis] * (bits >> axis & 1) as f64);
     let tets = [
@@ -269,7 +270,7 @@ fn other_solids_are_named_with_their_entity() {
         );
         assert!(error.to_string().contains(&expected), "{error}");
     }
-    // The same in version 4.1, where elements stand in blocks.
+    // The same in version 4.1, in which elements are listed in blocks.
     let mut file = Writer::new("4.1", Encoding::Text);
     file.text("$Nodes\n1 8 1 8\n3 9 0 8\n1 2 3 4 5 6 7 8\n");
     nodes.iter().for_each(|node| file.reals(node));
@@ -279,7 +280,7 @@ fn other_solids_are_named_with_their_entity() {
         error.contains("found a hexahedron (kind 5) in entity 9"),
         "{error}"
     );
-    // Faces, lines and points are no part of the mesh.
+    // Faces, lines and points are not part of the mesh.
     let mut elements: Vec<(i64, i64, &[usize])> = vec![
         (2, 1, &[1, 2, 3]),
         (1, 1, &[1, 2]),

@@ -1,4 +1,4 @@
-//! The soft body: what all its presses share.
+//! The soft body: the data that all of its presses share.
 
 use std::sync::Arc;
 
@@ -13,10 +13,12 @@ use crate::linear::direct::DirectSystem;
 use crate::linear::matrix::Pattern;
 use crate::{MPA_PER_KPA, Material, SolverSettings};
 
-/// Part of the shear modulus whose stress over the body's size makes the load that tolerances are at least relative to.
+/// Fraction of the shear modulus that, as a stress over the body's size, gives the smallest load to
+/// which tolerances are relative.
 const LEAST_LOAD: f64 = 1e-3;
 
-/// A soft body that rigid shapes press, bonded where its mesh says so. Shared by many presses; each has its own [`State`].
+/// A soft body that is pressed by rigid shapes, and bonded at the nodes that its mesh states. It is
+/// shared by many presses; each press has its own [`State`].
 pub struct SoftBody {
     pub(crate) mesh: TetMesh,
     pub(crate) material: Material,
@@ -24,40 +26,43 @@ pub struct SoftBody {
     pub(crate) elements: Elements,
     pub(crate) boundary: Boundary,
     pub(crate) obstacles: Vec<(Arc<dyn SignedDistance>, Pose)>,
-    /// Forces from outside on nodes, N.
+    /// External forces on nodes, N.
     pub(crate) loads_n: Vec<(u32, DVec3)>,
     pub(crate) on_two_threads: bool,
-    /// Factors that every press starts with; none if the body at rest has none.
+    /// Factors that every press starts with; `None` if the body at rest has none.
     pub(crate) rest_factors: Option<Factors>,
-    /// Corners of the coarse tetrahedron in each slot of the elements. `[n_slots]`
+    /// Corners of the coarse tetrahedron in each slot of the elements; `[n_slots]`.
     pub(crate) slot_corners: Vec<[u32; 4]>,
-    /// The coarse nodes that each node lies midway between; the same twice for a coarse node. `[n_nodes]`
+    /// The two coarse nodes that each node is midway between; twice the same for a coarse node;
+    /// `[n_nodes]`.
     pub(crate) ends: Vec<[u32; 2]>,
-    /// Modulus of the mean volume change over volume of each coarse node, MPa/mm³.
+    /// For each coarse node the modulus of the averaged volume change, divided by the volume,
+    /// MPa/mm³.
     pub(crate) volume_stiffness: Vec<f64>,
     pub(crate) pattern: Pattern,
     pub(crate) coarse: CoarseSystem,
-    /// None unless linear systems are solved by factors of the whole system.
+    /// `None` unless linear systems are solved by factors of the whole system.
     pub(crate) direct: Option<DirectSystem>,
-    /// Where forces on each node come from: `slot NODES + node`.
+    /// Where the forces on each node come from: `slot NODES + node`.
     pub(crate) force_sources: Sources,
-    /// Where volume changes of each coarse node come from: `4 slot + corner`.
+    /// Where the volume changes of each coarse node come from: `4 slot + corner`.
     pub(crate) volume_sources: Sources,
-    /// Sum over the points around each node of `μ V |G|²`, N/mm: an estimate of the node's own stiffness.
+    /// Sum of `μ V |G|²` over the quadrature points around each node, N/mm: an estimate of the
+    /// node's own stiffness.
     pub(crate) node_stiffness: Vec<f64>,
     /// Cube root of the volume, mm.
     pub(crate) size_mm: f64,
 }
 
-/// For each of some nodes, the entries of the elements to be summed there.
+/// For each node, the entries of the elements that are summed there.
 pub(crate) struct Sources {
-    /// `[n_nodes + 1]`
+    /// Start of each node's entries; `[n_nodes + 1]`.
     starts: Vec<u32>,
     entries: Vec<u32>,
 }
 
 impl Sources {
-    /// `of_tet` gives the nodes of a tetrahedron, and the entry that each takes.
+    /// `of_tet` gives the nodes of a tetrahedron, and the entry for each.
     pub(crate) fn new(n_nodes: usize, n_tets: usize, of_tet: &dyn Fn(usize) -> Vec<(u32, u32)>) -> Self {
         let mut rows = vec![Vec::new(); n_nodes];
         for tet in 0..n_tets {
@@ -74,7 +79,7 @@ impl Sources {
         Self { starts, entries }
     }
 
-    /// The entries of each node from the one with this index on.
+    /// The entries of each node, starting with the node `first`.
     #[inline]
     pub(crate) fn from(&self, first: usize) -> impl Iterator<Item = &[u32]> {
         let ranges = self.starts[first..].windows(2);
@@ -88,23 +93,24 @@ impl Sources {
 }
 
 impl SoftBody {
-    /// Adds a rigid shape that does not move. It should have no concave corners: walls that meet are added as separate shapes. States made before do
-    /// not have it.
+    /// Adds a rigid shape that does not move. It should have no concave corners: walls that meet
+    /// are added as separate shapes. States that were made before do not have it.
     #[must_use]
     pub fn with_obstacle(mut self, shape: Arc<dyn SignedDistance>, gel_from_obstacle: Pose) -> Self {
         self.obstacles.push((shape, gel_from_obstacle));
         self
     }
 
-    /// Solves each step on two threads, both busy for the whole step: for a single press that has to be fast. For many presses at the same time, one
-    /// thread each is better. The results are the same, bit for bit.
+    /// Solves each step on two threads, which are both busy during the whole step; this is for a
+    /// single press that has to be fast. For many presses at the same time, one thread for each is
+    /// better. The results are the same, bit for bit.
     #[must_use]
     pub fn on_two_threads(mut self) -> Self {
         self.on_two_threads = true;
         self
     }
 
-    /// The mesh at rest: the finer one, numbered anew.
+    /// The undeformed mesh: the finer one, with its nodes renumbered.
     #[must_use]
     pub fn mesh(&self) -> &TetMesh {
         &self.mesh
@@ -116,12 +122,13 @@ impl SoftBody {
         &self.material
     }
 
-    /// How many of so many shapes, the parts of the indenter and the obstacles, are the indenter's.
+    /// How many of the shapes (the parts of the indenter and the obstacles) are parts of the
+    /// indenter.
     pub(crate) fn n_indenter_parts(&self, n_shapes: usize) -> usize {
         n_shapes - self.obstacles.len()
     }
 
-    /// The nodes of the boundary, and where they are, mm.
+    /// The contact points at the nodes of the boundary, and their positions, mm.
     pub(crate) fn boundary_mm(
         &self,
         displacements_mm: &[DVec3],
@@ -130,13 +137,13 @@ impl SoftBody {
         nodes.map(|point| (point, self.point_mm(point, displacements_mm)))
     }
 
-    /// Where a point of the boundary is, mm.
+    /// Position of a contact point, mm.
     #[inline]
     pub(crate) fn point_mm(&self, point: &ContactPoint, displacements_mm: &[DVec3]) -> DVec3 {
         point.value(&self.mesh.nodes_mm) + point.value(displacements_mm)
     }
 
-    /// The pressures of each slot's corners, MPa.
+    /// The pressures of the corners of each slot, MPa.
     pub(crate) fn corner_pressures(&self, pressures_mpa: &[f64], corners: &mut Vec<[f64; 4]>) {
         corners.clear();
         let at = |node: u32| pressures_mpa[node as usize];
@@ -148,14 +155,16 @@ impl SoftBody {
         MPA_PER_KPA * self.material.model.shear_modulus_kpa() * self.size_mm.powi(3)
     }
 
-    /// Load that tolerances are at least relative to, N: that of a light touch. Where next to nothing presses, next to nothing matters.
+    /// Smallest load to which tolerances are relative, N: that of a light touch. Below it, errors
+    /// do not matter.
     pub(crate) fn least_load_n(&self) -> f64 {
         let stress_kpa = LEAST_LOAD * self.material.model.shear_modulus_kpa();
         self.negligible_load_n()
             .max(MPA_PER_KPA * stress_kpa * self.size_mm * self.size_mm)
     }
 
-    /// Loads below this count as none, N: far below what matters, above what round-off makes of a large bulk modulus.
+    /// Loads below this count as zero, N. It is far below any load of interest, and above the
+    /// round-off of a large bulk modulus.
     pub(crate) fn negligible_load_n(&self) -> f64 {
         let stress_kpa =
             1e-7 * self.material.model.shear_modulus_kpa() + 1e-9 * self.material.bulk_modulus_kpa;

@@ -1,4 +1,4 @@
-//! Building a soft body from a mesh.
+//! Builds a soft body from a mesh.
 
 use twintac_mesh::TetMesh;
 
@@ -13,11 +13,13 @@ use crate::newton::rest_factors;
 use crate::{LinearSolver, MPA_PER_KPA, Material, SoftBodyError, SolverSettings};
 
 impl SoftBody {
-    /// Builds the model of a mesh. Its bonded nodes are held, and the rest of its boundary can come into contact. Every tetrahedron is cut into
-    /// eight: displacements are unknowns at all nodes of the finer mesh, pressures at those of the mesh given.
+    /// Builds the model of a mesh. Its bonded nodes are held; the rest of its boundary can come
+    /// into contact. Every tetrahedron is cut into eight: displacements are unknowns at all nodes
+    /// of the finer mesh, pressures at those of the given mesh.
     ///
     /// # Errors
-    /// A mesh that is empty, held nowhere, or has nodes or tetrahedra that make no sense; a material or settings that make none.
+    /// A mesh that is empty or not held anywhere, or whose nodes or tetrahedra are invalid; an
+    /// invalid material or setting.
     pub fn new(mesh: &TetMesh, material: Material, settings: SolverSettings) -> Result<Self, SoftBodyError> {
         material.check()?;
         settings.check()?;
@@ -44,7 +46,7 @@ impl SoftBody {
             .iter()
             .map(|volume| modulus_mpa / volume)
             .collect();
-        // Slots without a tetrahedron have no volume; their corners are not used.
+        // Slots without a tetrahedron have no volume, and their corners are not used.
         let mut slot_corners = vec![[0; 4]; elements.n_slots()];
         for (corners, &slot) in coarse_tets.iter().zip(&elements.slots) {
             slot_corners[slot as usize] = *corners;
@@ -106,7 +108,7 @@ impl SoftBody {
     }
 }
 
-/// The volume that belongs to each coarse node, mm³.
+/// The volume of each coarse node, mm³.
 fn corner_volumes_mm3(elements: &Elements, coarse_tets: &[[u32; 4]], n_nodes: usize) -> Vec<f64> {
     let of_slots_mm3 = elements.corner_volumes_mm3();
     let mut volumes_mm3 = vec![0.0; n_nodes];
@@ -118,7 +120,8 @@ fn corner_volumes_mm3(elements: &Elements, coarse_tets: &[[u32; 4]], n_nodes: us
     volumes_mm3
 }
 
-/// What of the boundary can touch: its free nodes, and the triangles between them. `stiffness_mpa` is that of contact per area and inverse edge.
+/// The part of the boundary that can come into contact: its free nodes, and the triangles between
+/// them. `stiffness_mpa` is the contact stiffness per area and inverse edge length.
 fn boundary(mesh: &TetMesh, stiffness_mpa: f64) -> Boundary {
     let areas_mm2 = mesh.node_areas_mm2();
     let free = mesh
@@ -130,7 +133,7 @@ fn boundary(mesh: &TetMesh, stiffness_mpa: f64) -> Boundary {
     let mut boundary_nodes = Vec::new();
     for (index, &node) in (0..).zip(free) {
         index_of[node as usize] = Some(index);
-        // μ/h per area, with h² the area that belongs to the node.
+        // μ/h per area, where h² is the area of the node.
         let edge_mm = areas_mm2[node as usize].sqrt();
         boundary_nodes.push(ContactPoint::of_node(node, stiffness_mpa * edge_mm));
     }
@@ -145,7 +148,7 @@ fn boundary(mesh: &TetMesh, stiffness_mpa: f64) -> Boundary {
     Boundary::new(boundary_nodes, triangles)
 }
 
-/// The ten nodes of each coarse tetrahedron: its corners, then the midpoints of its edges.
+/// The ten nodes of each coarse tetrahedron: its corners, followed by the midpoints of its edges.
 fn parents(coarse_tets: &[[u32; 4]], ends: &[[u32; 2]]) -> Vec<[u32; NODES]> {
     let node_of: std::collections::HashMap<[u32; 2], u32> =
         ends.iter().zip(0..).map(|(&ends, node)| (ends, node)).collect();

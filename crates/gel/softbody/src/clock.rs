@@ -1,5 +1,6 @@
-//! Wall time, for costs and deadlines. WebAssembly by itself has no clock, and the library's own panics there: no time passes, so that costs are zero and no
-//! deadline comes.
+//! Wall time, for costs and deadlines. WebAssembly has no clock of its own, and that of the
+//! standard library panics there. In WebAssembly this clock stands still: costs are zero, and
+//! deadlines never come.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use std::time::Instant;

@@ -1,4 +1,4 @@
-//! A check of the derivatives that Newton's method uses, for any mesh, element and material.
+//! Checks the derivatives that Newton's method uses, for any mesh, element and material.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::newton::{Step, Unknowns};
 use crate::nodal::dot;
 use crate::state::State;
 
-/// Weights of a central difference of fourth order, at these multiples of the step.
+/// Weights of a fourth-order central difference, at these multiples of the step.
 const STENCIL: [(f64, f64); 4] = [
     (-2.0, 1.0 / 12.0),
     (-1.0, -2.0 / 3.0),
@@ -17,19 +17,21 @@ const STENCIL: [(f64, f64); 4] = [
     (2.0, -1.0 / 12.0),
 ];
 
-/// Errors of the derivatives compared with differences, relative to their size.
+/// Errors of the derivatives, compared with difference quotients, relative to their size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DerivativeErrors {
-    /// Of the nodal forces from differences of the energy, along the direction.
+    /// Error of the nodal forces along the direction, compared with differences of the energy.
     pub force: f64,
-    /// Of the tangent, times the direction, from differences of the nodal forces. The tangent is kept in single precision.
+    /// Error of the tangent times the direction, compared with differences of the nodal forces. The
+    /// tangent is stored in single precision.
     pub tangent: f64,
 }
 
 impl SoftBody {
-    /// Compares derivatives with differences at these displacements, along a direction in which bonded nodes stay where they are; the
-    /// differences take steps of that length. Both `[n_nodes]`, mm. A body without a past and without contact. `None` where a tetrahedron
-    /// is inside out.
+    /// Compares derivatives with difference quotients at these displacements, along a direction
+    /// that leaves bonded nodes where they are. The steps of the differences have the length of the
+    /// direction. Both are in mm, `[n_nodes]`. The body has no history and no contact. `None` if a
+    /// tetrahedron is inverted.
     #[must_use]
     pub fn derivative_errors(
         &self,
@@ -67,7 +69,7 @@ impl SoftBody {
                 *sum += *gradient * weight;
             }
         }
-        // The last of them was where the derivatives are wanted.
+        // The last evaluation, with the multiple 0, was at the given displacements.
         let x = Unknowns {
             displacements_mm: &mut moved,
             pressures_mpa: &mut pressures_mpa,

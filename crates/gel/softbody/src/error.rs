@@ -1,6 +1,6 @@
 //! Errors of this crate.
 
-/// A body that can't be built.
+/// A body that cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SoftBodyError {
     /// A mesh without tetrahedra.
@@ -12,20 +12,20 @@ pub enum SoftBodyError {
     /// A reference to a node that does not exist.
     #[error("{place} names node {found}, but there are {n_nodes} nodes")]
     Node {
-        /// Which tetrahedron or set.
+        /// The tetrahedron or the set.
         place: String,
         /// The index found.
         found: u32,
         /// Number of nodes.
         n_nodes: usize,
     },
-    /// A node without tetrahedron.
+    /// A node without a tetrahedron.
     #[error("node {node} belongs to no tetrahedron")]
     Stray {
         /// Its index.
         node: usize,
     },
-    /// A tetrahedron without volume, or inside out.
+    /// A tetrahedron that has no volume or is inverted.
     #[error("tetrahedron {tet} has a volume of {volume_mm3:.3e} mm³, expected more than 0")]
     Degenerate {
         /// Its index.
@@ -39,7 +39,7 @@ pub enum SoftBodyError {
     /// An invalid setting.
     #[error("solver setting `{field}` is {found}, expected {expected}")]
     Setting {
-        /// The offending field.
+        /// Name of the field.
         field: &'static str,
         /// What was expected.
         expected: &'static str,
@@ -54,47 +54,48 @@ pub enum SoftBodyError {
     Analysis {
         /// Size of the system.
         n_unknowns: usize,
-        /// What the sparse solver said.
+        /// Message of the sparse solver.
         reason: String,
     },
 }
 
-/// A step that could not be taken. The state stays as it was before the call.
+/// A step that could not be done. The state is as it was before the call.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
-    /// Equilibrium was not reached, however small the sub-steps.
+    /// Equilibrium was not reached, even with the smallest sub-steps.
     #[error("no equilibrium beyond {:.1} % of the step: residual {residual:.1e} of the load after {iterations} iterations", fraction * 100.0)]
     NotConverged {
-        /// Part of the step that did converge.
+        /// Fraction of the step that converged.
         fraction: f64,
-        /// Residual of the failed try over the load.
+        /// Residual of the failed attempt, divided by the load.
         residual: f64,
-        /// Newton iterations spent on the whole step.
+        /// Number of Newton iterations of the whole step.
         iterations: u32,
     },
-    /// No step along the search direction keeps every tetrahedron's volume above zero.
+    /// No step along the search direction keeps the volume of every tetrahedron above zero.
     #[error("tetrahedra turn inside out beyond {:.1} % of the step", fraction * 100.0)]
     Inverted {
-        /// Part of the step that did converge.
+        /// Fraction of the step that converged.
         fraction: f64,
     },
-    /// The tangent could not be factorised.
+    /// The tangent could not be factorized.
     #[error("the tangent is singular beyond {:.1} % of the step", fraction * 100.0)]
     Singular {
-        /// Part of the step that did converge.
+        /// Fraction of the step that converged.
         fraction: f64,
     },
-    /// The indenter and the body would pass through each other: the indenter is too thin for the mesh, or for the step.
+    /// The indenter and the body would pass through each other: the indenter is too thin for the
+    /// mesh, or for the step.
     #[error(
         "the indenter passes {reach_mm:.2} mm through the surface at {at_mm:.3} mm, beyond {:.1} % of the step: it is {thickness_mm:.2} mm thick there, and the edges of the mesh are \
          {edge_mm:.2} mm long. Take shorter edges, or shorter steps", fraction * 100.0
     )]
     PassedThrough {
-        /// Part of the step that was taken before.
+        /// Fraction of the step that was done before.
         fraction: f64,
-        /// A place where they pass through each other, mm.
+        /// A point where they pass through each other, mm.
         at_mm: glam::DVec3,
-        /// How far, mm.
+        /// How far the indenter reaches through, mm.
         reach_mm: f64,
         /// Thickness of the indenter there, mm.
         thickness_mm: f64,
@@ -104,29 +105,29 @@ pub enum SolveError {
     /// The indenter would enter something rigid.
     #[error("blocked: the indenter would be at least {depth_mm:.3} mm deep in {by} at {at_mm:.3} mm")]
     Blocked {
-        /// What it would reach into.
+        /// What it would enter.
         by: Blocker,
-        /// A point inside both, mm.
+        /// A point inside of both, mm.
         at_mm: glam::DVec3,
-        /// The depth there, mm; elsewhere it may be deeper.
+        /// The depth there, mm; it may be larger elsewhere.
         depth_mm: f64,
     },
-    /// The force asked for is not met anywhere within the travel.
+    /// The requested force is not reached anywhere within the travel.
     #[error(
-        "a force of {wanted_n} N is not met within {travel_mm} mm of travel: {reached_n:.4} N where it was sought last"
+        "a force of {wanted_n} N is not reached within {travel_mm} mm of travel: the last position has {reached_n:.4} N"
     )]
     ForceNotReached {
-        /// The force asked for, N.
+        /// The requested force, N.
         wanted_n: f64,
-        /// The force last found, N.
+        /// The force that was found last, N.
         reached_n: f64,
-        /// Travel that was allowed, mm.
+        /// The allowed travel, mm.
         travel_mm: f64,
     },
     /// A pose or time that is not finite, or a negative time step.
     #[error("{what} is {found}, expected {expected}")]
     Input {
-        /// Which argument.
+        /// The argument.
         what: &'static str,
         /// What was expected.
         expected: String,
@@ -136,7 +137,7 @@ pub enum SolveError {
 }
 
 impl SolveError {
-    /// Part of the step that did converge, from 0 to 1; the state is that before the step.
+    /// Fraction of the step that converged, from 0 to 1; the state is that before the step.
     #[must_use]
     pub fn converged_fraction(&self) -> f64 {
         match self {
@@ -149,10 +150,10 @@ impl SolveError {
     }
 }
 
-/// Something rigid that an indenter can meet.
+/// Something rigid that an indenter can run into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blocker {
-    /// What the body is bonded to.
+    /// Something that the body is bonded to.
     Bonded,
     /// An obstacle.
     Obstacle,

@@ -1,33 +1,35 @@
-//! What a step reports.
+//! The result of a step.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// The result of a step. Forces act on the gel, in the gel's frame; their sum is zero except for the residual.
+/// The result of a step. Forces act on the gel and are in the gel's frame; their sum is zero except
+/// for the residual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Force of the indenter, N.
     pub indenter_force_n: DVec3,
     /// Torque of the indenter about the indenter's origin, N mm.
     pub indenter_torque_n_mm: DVec3,
-    /// Force of what the gel is bonded to, N.
+    /// Force of everything that the gel is bonded to, N.
     pub board_reaction_n: DVec3,
     /// Force of all obstacles, N.
     pub obstacle_reaction_n: DVec3,
-    /// Whether the forces are balanced. A step that does not converge is an error, unless its time was up ([`crate::State::answer_within`]): then `residual` says how
-    /// much is left unbalanced.
+    /// Whether the forces are balanced. A step that does not converge is an error, unless its
+    /// deadline has passed ([`crate::State::answer_within`]): then `residual` states how much is
+    /// unbalanced.
     pub converged: bool,
     /// Newton iterations, including those of failed sub-steps.
     pub iterations: u32,
-    /// 2-norm of the unbalanced nodal forces over the load.
+    /// 2-norm of the unbalanced nodal forces, divided by the load.
     pub residual: f64,
     /// Largest depth of a node inside a shape, mm.
     pub penetration_mm: f64,
-    /// Smallest volume of a tetrahedron over its volume at rest.
+    /// Smallest ratio of the volume of a tetrahedron to its undeformed volume.
     pub smallest_volume_ratio: f64,
     /// Wall time, s.
     pub wall_time_s: f64,
-    /// How it was spent.
+    /// How the time was spent.
     pub cost: Cost,
 }
 
@@ -40,12 +42,12 @@ pub struct Cost {
     pub contact_s: f64,
     /// The matrix of the linear system, s.
     pub assembly_s: f64,
-    /// Factors of the coarse system, s.
+    /// Factorization of the coarse system, s.
     pub factorisation_s: f64,
     /// Conjugate gradients, s.
     pub linear_solve_s: f64,
-    /// How often the coarse system was factorised.
+    /// Number of factorizations of the coarse system.
     pub factorisations: u32,
-    /// Iterations of conjugate gradients.
+    /// Number of iterations of conjugate gradients.
     pub linear_iterations: u32,
 }

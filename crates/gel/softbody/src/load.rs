@@ -1,16 +1,17 @@
-//! Loads on the surface, for checks against closed forms.
+//! Loads on the surface, for comparisons with closed forms.
 
 use glam::DVec3;
 
 use crate::MPA_PER_KPA;
 use crate::body::SoftBody;
 
-/// Rows of small triangles that each triangle of the surface is cut into.
+/// Number of rows of small triangles that each triangle of the surface is cut into.
 const ROWS: u32 = 4;
 
 impl SoftBody {
-    /// Loads the surface with a traction, kPa, as a function of the position at rest. It keeps its size and direction when the body moves, and acts in
-    /// full from the next step on; between the nodes of the finer mesh it is spread linearly.
+    /// Loads the surface with a traction, kPa, as a function of the undeformed position. It keeps
+    /// its size and direction when the body moves, and acts in full from the next step on. Between
+    /// the nodes of the finer mesh it is distributed linearly.
     #[must_use]
     pub fn with_surface_load(mut self, traction_kpa: &dyn Fn(DVec3) -> DVec3) -> Self {
         let mesh = self.mesh();
@@ -34,7 +35,7 @@ impl SoftBody {
     }
 }
 
-/// The middles of the small triangles, in barycentric coordinates.
+/// Middles of the small triangles, in barycentric coordinates.
 fn middles() -> impl Iterator<Item = [f64; 3]> {
     let upright = |i, j| (i + j < ROWS).then_some([i, j].map(|k| f64::from(3 * k + 1)));
     let inverted = |i, j| (i + j + 1 < ROWS).then_some([i, j].map(|k| f64::from(3 * k + 2)));

@@ -1,4 +1,4 @@
-//! Pressing with a force instead of to a pose.
+//! Presses with a given force instead of to a pose.
 
 use glam::DVec3;
 use twintac_shape::{Pose, SignedDistance};
@@ -8,46 +8,54 @@ use crate::body::SoftBody;
 use crate::frame::Frame;
 use crate::state::State;
 
-/// First step into the body, and first step from a position at which the stiffness is not known, mm.
+/// First step into the body, and first step from a position where the stiffness is unknown, mm.
 const FIRST_STEP_MM: f64 = 0.1;
 
-/// A gap that counts as touch, mm.
+/// A gap that counts as contact, mm.
 const TOUCH_MM: f64 = 1e-3;
 
-/// Largest ratio of a step to the last one.
+/// Largest ratio of a step to the previous one.
 const MAX_GROWTH: f64 = 4.0;
 
-/// Tries after which the search fails.
+/// Number of attempts after which the search fails.
 const MAX_TRIES: u32 = 40;
 
-/// Below this part of the force, or this width of the bracket, mm, the rest is found in steps of no time, each from the last position. The penetration
-/// left after a large motion changes the force by more than this; after a very small motion it does not.
+/// If the missing fraction of the force is below this, or the width of the bracket in mm, the rest
+/// is found in steps without duration, each from the last position. The penetration that remains
+/// after a large motion changes the force by more than this; after a very small motion it does not.
 const NEAR: f64 = 1e-3;
 
-/// How far from the force asked for the one found may be, in tolerances of the solver.
+/// Allowed difference between the found force and the requested one, in units of the solver's
+/// tolerance.
 const TOLERANCES: f64 = 10.0;
 
 /// A force to press with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// The direction, a unit vector in the body's frame, along which the indenter is pushed and may move.
+    /// The direction, a unit vector in the body's frame, along which the indenter is pushed and may
+    /// move.
     pub direction: DVec3,
-    /// Force of the indenter on the body along that direction, N, above 0.
+    /// Force of the indenter on the body along this direction, N; above 0.
     pub force_n: f64,
-    /// How far the indenter may be from the pose that it is given, to either side along the direction, mm.
+    /// Largest distance of the indenter from its given pose, to either side along the direction,
+    /// mm.
     pub travel_mm: f64,
 }
 
 impl SoftBody {
-    /// Moves the indenter within a time to the position at which it presses with a force: the given pose, shifted along the force's direction.
-    /// [`State::gel_from_indenter`] has that position afterwards. The force is met to ten times the relative tolerance of the settings.
+    /// Moves the indenter within a time to the position where it presses with a force: the given
+    /// pose, shifted along the direction of the force. [`State::gel_from_indenter`] gives this
+    /// position afterwards. The force is accurate to ten times the relative tolerance of the
+    /// settings.
     ///
-    /// The position is found by secant steps. Each is a whole solution from the state before the call, so that the history of a viscoelastic body
-    /// contains one motion only; the last steps, about a thousandth of the force apart, start from each other.
+    /// The position is found by secant steps. Each of them is a whole solution from the state
+    /// before the call, so that the history of a viscoelastic body contains one motion only. The
+    /// last steps, when about a thousandth of the force is missing, start from each other.
     ///
     /// # Errors
-    /// [`SolveError::ForceNotReached`] if the force is not met within the travel, and the errors of [`SoftBody::advance`] if those are what
-    /// stops the indenter. The state is then as it was.
+    /// [`SolveError::ForceNotReached`] if the force is not reached within the travel, and the
+    /// errors of [`SoftBody::advance`] if these stop the indenter. The state is then as it was
+    /// before.
     pub fn advance_to_force(
         &self,
         state: &mut State,
@@ -81,7 +89,7 @@ impl SoftBody {
         };
         let mut spare = std::mem::take(&mut state.workspace);
         let deadline = state.deadline.take();
-        // The state from which the next try starts, and its time step.
+        // The state from which the next attempt starts, and its time step.
         let (mut base, mut left_s) = (state.clone(), time_step_s);
         let mut motion = state.last.clone();
         let mut is_near = false;
@@ -99,7 +107,8 @@ impl SoftBody {
                     let force_n = frame.indenter_force_n.dot(push.direction);
                     let missing_n = push.force_n - force_n;
                     reached_n = force_n;
-                    // Between positions that are too close, the difference of forces is mostly that of the penetration.
+                    // Between positions that are too close, the difference of the forces is mostly
+                    // that of the penetration.
                     slope = slope
                         .filter(|_| is_near)
                         .or_else(|| search.slope(next_mm, force_n))
@@ -144,7 +153,8 @@ impl SoftBody {
         }))
     }
 
-    /// How far the indenter can move before a node of the boundary touches it, mm; at most `farthest_mm`.
+    /// Distance that the indenter can move before a node of the boundary touches it, mm; at most
+    /// `farthest_mm`.
     fn approach(
         &self,
         state: &State,
@@ -167,13 +177,13 @@ impl SoftBody {
             if gap_mm <= TOUCH_MM {
                 break;
             }
-            // A distance changes no faster than its point moves.
+            // A signed distance changes by at most the distance that its point moves.
             offset_mm += gap_mm;
         }
         offset_mm.min(farthest_mm)
     }
 
-    /// Force of the indenter at a state, N.
+    /// Force of the indenter in a state, N.
     fn indenter_force_n(&self, state: &State) -> DVec3 {
         let parts = state.contacts[..state.n_indenter_parts(self)].iter();
         let forces = parts.flat_map(|contact| contact.forces_n(&self.boundary));
@@ -215,18 +225,18 @@ impl Push {
     }
 }
 
-/// What is known of the force over the travel.
+/// What is known of the force as a function of the travel.
 struct Search {
     /// Farthest position that is not far enough, mm.
     low: Option<f64>,
-    /// Nearest position that is too far, or that can't be reached, mm.
+    /// Nearest position that is too far, or that cannot be reached, mm.
     high: Option<f64>,
-    /// Last position and its force, mm and N.
+    /// Last position, mm, and its force, N.
     last: Option<(f64, f64)>,
 }
 
 impl Search {
-    /// Distance between too far and not far enough, mm.
+    /// Distance between the two, mm.
     fn width_mm(&self) -> f64 {
         match (self.low, self.high) {
             (Some(low), Some(high)) => high - low,
@@ -234,14 +244,15 @@ impl Search {
         }
     }
 
-    /// Slope of the force from the last position to this one, N/mm; none unless it is finite and positive.
+    /// Slope of the force from the last position to this one, N/mm; `None` unless it is finite and
+    /// positive.
     fn slope(&self, at_mm: f64, force_n: f64) -> Option<f64> {
         let (last_mm, last_n) = self.last?;
         let slope = (force_n - last_n) / (at_mm - last_mm);
         (slope.is_finite() && slope > 0.0).then_some(slope)
     }
 
-    /// The next position to try after one at which this much force is missing, mm.
+    /// The next position to try after a position at which this much force is missing, mm.
     fn next(&mut self, at_mm: f64, missing_n: f64, slope: Option<f64>) -> f64 {
         let step_mm = self
             .last
@@ -262,7 +273,7 @@ impl Search {
         }
     }
 
-    /// The next position to try after one that can't be reached, mm; none if none is left.
+    /// The next position to try after one that cannot be reached, mm; `None` if there is none.
     fn retreat(&mut self, at_mm: f64, safe_mm: f64) -> Option<f64> {
         self.high = Some(self.high.map_or(at_mm, |high| high.min(at_mm)));
         let low_mm = self.low.unwrap_or(safe_mm);

@@ -9,14 +9,14 @@ use crate::nodal::moved;
 use crate::state::State;
 
 impl SoftBody {
-    /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression. `[n_nodes]`
+    /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression; `[n_nodes]`.
     #[must_use]
     pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
         let response = self.response(state);
         self.nodal_pressure_kpa(&response, &state.displacements_mm, &state.pressures_mpa)
     }
 
-    /// The same, of the parts of a state.
+    /// The hydrostatic pressure at each node, from the parts of a state.
     fn nodal_pressure_kpa(
         &self,
         response: &Response,
@@ -24,7 +24,7 @@ impl SoftBody {
         pressures_mpa: &[f64],
     ) -> Vec<f64> {
         let shares = element::hydrostatic_shares(&self.elements, response, displacements_mm);
-        // Averaged as the volume changes are that make the rest of the pressure.
+        // Averaged in the same way as the volume changes that give the rest of the pressure.
         let pressures_mpa = shares.map_or(pressures_mpa.to_vec(), |shares| {
             let shares = shares.as_flattened();
             let modulus_mpa = MPA_PER_KPA * self.material.volume_modulus_kpa();
@@ -44,7 +44,8 @@ impl SoftBody {
             .collect()
     }
 
-    /// Rates of the hydrostatic pressure at each node along a state's direction, kPa over the unit of the parameter. `[n_nodes]`
+    /// Derivatives of the hydrostatic pressure at each node along a state's direction, kPa per unit
+    /// of the parameter; `[n_nodes]`.
     #[must_use]
     pub fn pressure_sensitivity_kpa(&self, state: &State, direction: usize) -> Vec<f64> {
         let rates = &state.sensitivities[direction];
@@ -62,8 +63,8 @@ impl SoftBody {
             .collect()
     }
 
-    /// Von Mises stress at each node, kPa, of the mean over the deformed volume of the tetrahedra around it of the Cauchy stress, its
-    /// relaxing part included. `[n_nodes]`
+    /// Von Mises stress at each node, kPa. It is that of the mean Cauchy stress over the deformed
+    /// volume of the tetrahedra around the node, including its relaxing part; `[n_nodes]`.
     #[must_use]
     pub fn von_mises_kpa(&self, state: &State) -> Vec<f64> {
         let response = self.response(state);
@@ -76,7 +77,7 @@ impl SoftBody {
             .collect()
     }
 
-    /// The forces that hold the bonded nodes, in their order, N. `[n_bonded]`
+    /// The forces that hold the bonded nodes, N, in the order of these nodes; `[n_bonded]`.
     #[must_use]
     pub fn bonded_forces_n(&self, state: &State) -> Vec<DVec3> {
         let response = self.response(state);
@@ -96,7 +97,7 @@ impl SoftBody {
             .collect()
     }
 
-    /// The response of the material over a step of no time.
+    /// The response of the material in a step without duration.
     fn response<'a>(&'a self, state: &'a State) -> Response<'a> {
         Response::new(&self.material, 0.0, &state.history)
     }

@@ -12,36 +12,44 @@ pub struct SolverSettings {
     pub element: Element,
     /// How linear systems are solved. Default two-level.
     pub linear: LinearSolver,
-    /// A step has converged when the 2-norm of the unbalanced nodal forces is below this part of the load. Default 1e-6.
+    /// A step has converged when the 2-norm of the unbalanced nodal forces is below this fraction
+    /// of the load. Default 1e-6.
     pub tolerance: f64,
-    /// Newton iterations after which a sub-step is halved. Default 100.
+    /// Number of Newton iterations after which a sub-step is halved. Default 100.
     pub max_iterations: u32,
-    /// Farthest the indenter moves in one sub-step, mm. Default 0.5.
+    /// Largest motion of the indenter in one sub-step, mm. Default 0.5.
     pub max_travel_mm: f64,
-    /// Smallest sub-step as part of that or of the step asked for, whichever is smaller. Default 1/16.
+    /// Smallest sub-step, as a fraction of that or of the requested step, whichever is smaller.
+    /// Default 1/16.
     pub min_substep: f64,
-    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 100. At nodes, multipliers take over the
-    /// contact forces, so that it affects how fast steps converge, but not their result. The quadrature points beside a shape's rim have
-    /// no multipliers: there the result depends on it as on the mesh, by some percent of the force on a coarse one.
+    /// Contact stiffness per area, in units of shear modulus divided by local edge length.
+    /// Default 100. At nodes, multipliers take over the contact forces, so that it affects how fast
+    /// steps converge, but not their result. The quadrature points beside a shape's rim have no
+    /// multipliers: there the result depends on it as it does on the mesh, by some percent of the
+    /// force on a coarse mesh.
     pub contact_stiffness: f64,
-    /// Largest depth of a node inside a shape after a step, mm; contact is stiffened until it is reached. Default 0.005.
+    /// Largest depth of a node inside of a shape after a step, mm; contact is stiffened until it is
+    /// reached. Default 0.005.
     pub penetration_mm: f64,
-    /// Coulomb's coefficient of friction between the body and the indenter. Default 0. Before it slips, a node in touch moves elastically, by up to the
-    /// friction over its contact stiffness: `μ p / (contact_stiffness G)` local edge lengths at a contact pressure `p` and a
-    /// shear modulus `G`, far less than the body itself deforms.
+    /// Coulomb's coefficient of friction between the body and the indenter. Default 0. Before it
+    /// slips, a node in contact moves elastically, by up to its friction divided by its contact
+    /// stiffness: `μ p / (contact_stiffness G)` local edge lengths at a contact pressure `p` and a
+    /// shear modulus `G`, which is far less than the deformation of the body itself.
     pub friction: f64,
     /// Coulomb's coefficient of friction between the body and its obstacles. Default 0.
     pub obstacle_friction: f64,
 }
 
-/// How linear systems are solved. Answers agree within the tolerance.
+/// How linear systems are solved. The results agree within the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LinearSolver {
-    /// Conjugate gradients with a preconditioner on two levels, whose factors are kept as long as they converge fast.
+    /// Conjugate gradients with a two-level preconditioner, whose factors are kept as long as the
+    /// iterations converge fast.
     #[default]
     TwoLevel,
-    /// Factors of the whole system in double precision, computed anew for every direction: slow, for comparison.
+    /// Factors of the whole system in double precision, computed again for every direction: slow,
+    /// for comparison.
     Direct,
 }
 

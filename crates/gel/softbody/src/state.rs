@@ -12,32 +12,32 @@ use crate::relaxation::History;
 use crate::sensitivity::{Direction, Sensitivity};
 use crate::{SoftBodyError, SolverSettings};
 
-/// Largest ratio of a motion to the last one for an extrapolation.
+/// Largest ratio of a motion to the previous one for which displacements are extrapolated.
 const MAX_EXTRAPOLATION: f64 = 2.0;
 
-/// The state of a soft body: what one press changes. Made by [`SoftBody::rest`].
+/// The state of a soft body: everything that a press changes. Made by [`SoftBody::rest`].
 #[derive(Clone)]
 pub struct State {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
     pub(crate) history: History,
-    /// Those of the indenter's parts first, then those of the obstacles.
+    /// Contacts of the indenter's parts, followed by those of the obstacles.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) gel_from_indenter: Option<Pose>,
     /// Last accepted motion, from which the next one is extrapolated.
     pub(crate) last: Option<Motion>,
-    /// Slope of the force over the indenter's travel, of the last press by a force, N/mm.
+    /// Slope of the force over the indenter's travel in the last press with a force, N/mm.
     pub(crate) stiffness_n_per_mm: Option<f64>,
-    /// Derivatives of all of the above along each direction asked for.
+    /// Derivatives of all of the above along each requested direction.
     pub(crate) sensitivities: Vec<Sensitivity>,
-    /// Time after which a step ends, settled or not.
+    /// Time after which a step ends, whether it has converged or not.
     pub(crate) deadline: Option<Duration>,
-    /// Whether the last step ended because its time was up.
+    /// Whether the last step ended at its deadline.
     pub(crate) was_late: bool,
     pub(crate) workspace: Workspace,
 }
 
-/// A motion of the indenter, and how the body followed.
+/// A motion of the indenter, and the displacements that followed.
 #[derive(Clone, Default)]
 pub(crate) struct Motion {
     pub(crate) travel_mm: DVec3,
@@ -45,7 +45,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// Sets the travel, and the displacements as the difference of new ones from old.
+    /// Sets the travel, and the displacements as the difference between new and old ones.
     pub(crate) fn set(&mut self, travel_mm: DVec3, new_mm: &[DVec3], old_mm: &[DVec3]) {
         self.travel_mm = travel_mm;
         let ends = new_mm.iter().zip(old_mm);
@@ -53,7 +53,8 @@ impl Motion {
         self.displacements_mm.extend(ends.map(|(new, old)| *new - *old));
     }
 
-    /// Moves displacements on to where this motion would lead after a travel that follows; false where that is nowhere else.
+    /// Extrapolates displacements along this motion for the following travel; returns false if they
+    /// do not change.
     pub(crate) fn go_on(&self, travel_mm: DVec3, displacements_mm: &mut [DVec3]) -> bool {
         let ratio = self.ratio(travel_mm);
         for (u, change) in displacements_mm.iter_mut().zip(&self.displacements_mm) {
@@ -62,7 +63,8 @@ impl Motion {
         ratio != 0.0
     }
 
-    /// Ratio of the next motion to this one, negative if it goes back: presses are extrapolated in depth, not in time.
+    /// Ratio of the next motion to this one, negative if it goes back: presses are extrapolated in
+    /// depth, not in time.
     fn ratio(&self, travel_mm: DVec3) -> f64 {
         let size = self.travel_mm.length_squared();
         if size > 0.0 {
@@ -79,7 +81,8 @@ impl State {
         body.n_indenter_parts(self.contacts.len())
     }
 
-    /// Prepares for an indenter of so many parts. One of another number is another indenter, which nothing touches yet.
+    /// Prepares for an indenter with this number of parts. If the number differs, it is another
+    /// indenter, and nothing is in contact with it yet.
     pub(crate) fn take_parts(&mut self, body: &SoftBody, n_parts: usize) {
         let n_before = self.n_indenter_parts(body);
         if n_before == n_parts {
@@ -94,32 +97,36 @@ impl State {
         }
     }
 
-    /// The pose of the indenter; none before the first step.
+    /// The pose of the indenter; `None` before the first step.
     #[must_use]
     pub fn gel_from_indenter(&self) -> Option<Pose> {
         self.gel_from_indenter
     }
 
-    /// From now on a step of [`SoftBody::advance`] ends within this wall time with what it has found, and the next one goes on from there:
-    /// [`crate::Frame::converged`] says whether the forces are balanced, [`crate::Frame::residual`] how nearly. A step takes one iteration at least, each of its parts one, and
-    /// no other that would be late if it took as long as the last. Such results are not reproducible. Presses to a force and presses with rates take the time that they need.
+    /// From now on, a step of [`SoftBody::advance`] ends within this wall time with the solution
+    /// that it has reached, and the next step continues from there: [`crate::Frame::converged`]
+    /// states whether the forces are balanced, [`crate::Frame::residual`] how well. Each part of a
+    /// step does at least one iteration, and no further one that would be late if it took as long
+    /// as the previous. Such results are not reproducible. Presses with a force and presses with
+    /// derivatives ignore the deadline.
     pub fn answer_within(&mut self, deadline: Option<Duration>) {
         self.deadline = deadline;
     }
 
-    /// Displacement of a node from its position at rest, mm.
+    /// Displacement of a node from its undeformed position, mm.
     #[must_use]
     pub fn displacement_mm(&self, node: usize) -> DVec3 {
         self.displacements_mm[node]
     }
 
-    /// Displacements of the nodes from their positions at rest, mm. `[n_nodes]`
+    /// Displacements of the nodes from their undeformed positions, mm; `[n_nodes]`.
     #[must_use]
     pub fn displacements_mm(&self) -> &[DVec3] {
         &self.displacements_mm
     }
 
-    /// Rate of [`crate::Frame::indenter_force_n`] after the last step along each direction, N over the unit of the parameter.
+    /// Derivative of [`crate::Frame::indenter_force_n`] after the last step along each direction, N
+    /// per unit of the parameter.
     #[must_use]
     pub fn force_sensitivities_n(&self) -> Vec<DVec3> {
         let rates = self.sensitivities.iter();
@@ -128,7 +135,7 @@ impl State {
 }
 
 impl SoftBody {
-    /// The body at rest, with no load in its past.
+    /// The body at rest, without any previous load.
     #[must_use]
     pub fn rest(&self) -> State {
         State {
@@ -152,8 +159,8 @@ impl SoftBody {
     /// The body at rest, for a press whose results are differentiated along some directions.
     ///
     /// # Errors
-    /// A direction with a step that is not above zero, impossible materials, or another number of Prony terms; a body with friction, which cannot be
-    /// differentiated.
+    /// A direction with a step that is not above zero, with invalid materials, or with another
+    /// number of Prony terms; a body with friction, which cannot be differentiated.
     pub fn rest_with_sensitivities(&self, directions: &[Direction]) -> Result<State, SoftBodyError> {
         let mut state = self.rest();
         let SolverSettings {

@@ -1,4 +1,4 @@
-//! Homogeneous deformations of an irregular mesh against closed forms.
+//! Homogeneous deformations of an irregular mesh, compared with closed forms.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -10,7 +10,7 @@ use twintac_mesh::TetMesh;
 use twintac_softbody::{Material, Model, PronyTerm, SoftBody, SolverSettings, State};
 
 const BULK_KPA: f64 = 1200.0;
-/// A block whose inner nodes are shaken, all of its boundary bonded.
+/// A block whose inner nodes are displaced at random, with all of its boundary bonded.
 fn shaken_block() -> TetMesh {
     let mut mesh = block(&even(0.0, 3.0, 4), &even(0.0, 2.0, 3), &even(0.0, 2.5, 4));
     bond(&mut mesh, |_| true);
@@ -27,7 +27,7 @@ fn shaken_block() -> TetMesh {
     mesh
 }
 
-/// Whether a law resists a change of volume by itself: it knows no relaxation.
+/// Whether a law itself resists a change of volume; such a law has no relaxation.
 fn has_pressure(law: &Model) -> bool {
     matches!(law, Model::LogarithmicNeoHookean(_) | Model::StableNeoHookean(_))
 }
@@ -53,7 +53,7 @@ fn body_to(law: Model, prony: Vec<PronyTerm>, tolerance: f64) -> SoftBody {
     .unwrap()
 }
 
-/// Moves the boundary as this deformation gradient says.
+/// Moves the boundary by this deformation gradient.
 fn deform(body: &SoftBody, state: &mut State, gradient: DMat3, time_step_s: f64) {
     let mesh = body.mesh();
     let moved: Vec<DVec3> = mesh
@@ -76,7 +76,7 @@ fn stress_kpa(body: &SoftBody, state: &State) -> DMat3 {
     sum * (1000.0 / mesh.volume_mm3())
 }
 
-/// `λ_i ∂W/∂λ_i` for principal stretches, kPa, the mean volume change included.
+/// `λ_i ∂W/∂λ_i` for principal stretches, kPa, including the term of the averaged volume change.
 fn principal_kirchhoff_kpa(model: &Model, stretches: DVec3) -> DVec3 {
     let volume = stretches.x * stretches.y * stretches.z;
     let squares = stretches * stretches;
@@ -113,7 +113,8 @@ fn principal_kirchhoff_kpa(model: &Model, stretches: DVec3) -> DVec3 {
             mu_kpa * (squares - 1.0) + by_mean_volume(BULK_KPA - 2.0 / 3.0 * mu_kpa)
         }
         Model::StableNeoHookean(law) => {
-            // As Smith, de Goes and Kim (2018) write it, with its parabola in the volume in one piece.
+            // In the form of Smith, de Goes and Kim (2018), with the quadratic term in the volume
+            // in one piece.
             let mu = 4.0 / 3.0 * law.shear_modulus_kpa;
             let lambda = BULK_KPA - 2.0 / 3.0 * law.shear_modulus_kpa + 5.0 / 6.0 * law.shear_modulus_kpa;
             let rest = 1.0 + mu / lambda - mu / (4.0 * lambda);
@@ -132,7 +133,7 @@ fn hydrostatic_pressure_kpa(model: &Model, stretches: DVec3) -> f64 {
     -principal_kirchhoff_kpa(model, stretches).element_sum() / (3.0 * stretches.element_product())
 }
 
-/// The root of a rising function.
+/// The root of an increasing function.
 fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -210,8 +211,8 @@ fn sheared(amount: f64) -> DMat3 {
     DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(amount, 0.0, 1.0))
 }
 
-/// Simple shear keeps the volume, and its principal stretches are `λ, 1, 1/λ` with `λ - 1/λ = γ`, the first at `tan θ = 1/λ` to the direction
-/// that everything moves in: `σ = Σ τ_i n_i ⊗ n_i`, `P = σ F⁻ᵀ`.
+/// Simple shear keeps the volume. Its principal stretches are `λ, 1, 1/λ` with `λ - 1/λ = γ`, the
+/// first at `tan θ = 1/λ` to the direction of the shear: `σ = Σ τ_i n_i ⊗ n_i`, `P = σ F⁻ᵀ`.
 fn shear_stress_kpa(law: &Model, amount: f64) -> DMat3 {
     let largest = 0.5 * amount + (1.0 + 0.25 * amount * amount).sqrt();
     let kirchhoff = principal_kirchhoff_kpa(law, DVec3::new(largest, 1.0, 1.0 / largest));
@@ -227,7 +228,8 @@ fn simple_shear_follows_the_closed_form() {
         let mut state = body.rest();
         deform(&body, &mut state, sheared(0.4), 0.0);
         assert_close(stress_kpa(&body, &state), shear_stress_kpa(&law, 0.4));
-        // σ_xz is √3 times smaller than von Mises stress where normal stresses are small; here all of it.
+        // Where normal stresses are small, σ_xz is √3 times smaller than the von Mises stress; here
+        // all components are used.
         let left = shear_stress_kpa(&law, 0.4) * sheared(0.4).transpose();
         let mean = (left.x_axis.x + left.y_axis.y + left.z_axis.z) / 3.0;
         let left = left - DMat3::from_diagonal(DVec3::splat(mean));
@@ -275,7 +277,8 @@ fn a_held_shear_relaxes_by_the_prony_series() {
 
 #[test]
 fn a_slow_ramp_follows_the_convolution() {
-    // Small shear, so that the stress without relaxation is μγ; then σ(t) = μ γ̇ [(1 - Σw) t + Σ w τ (1 - exp(-t/τ))].
+    // The shear is small, so that the stress without relaxation is μγ; then σ(t) = μ γ̇ [(1 - Σw)
+    // t + Σ w τ (1 - exp(-t/τ))].
     let (rate, law) = (1e-3, Model::examples().remove(0));
     let body = body_to(law, PRONY.to_vec(), 1e-8);
     let mut state = body.rest();

@@ -1,4 +1,5 @@
-//! Steps that end when their time is up. A deadline of no time is reproducible: each part of a step has one iteration.
+//! Steps that end at their deadline. A deadline of zero is reproducible: each part of a step has
+//! one iteration.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 

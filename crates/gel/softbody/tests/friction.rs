@@ -1,4 +1,4 @@
-//! Friction: sticking, slipping, twisting, and nothing for nothing.
+//! Friction: sticking, slipping and twisting, no friction without a coefficient.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -24,7 +24,7 @@ fn rough() -> SolverSettings {
     }
 }
 
-/// Wider than the gel: one normal all over.
+/// A plate wider than the gel: the normal is the same everywhere.
 fn plate() -> Box<dyn SignedDistance> {
     Shape::Box {
         size_mm: [40.0, 40.0, 4.0],
@@ -48,7 +48,7 @@ fn step(
     body.advance(state, shape, &pose, 0.0).unwrap()
 }
 
-/// Friction over its limit.
+/// Friction divided by its limit.
 fn mobilised(frame: &Frame) -> f64 {
     frame.indenter_force_n.truncate().length() / (FRICTION * -frame.indenter_force_n.z)
 }
@@ -81,7 +81,7 @@ fn a_dragged_plate_sticks_then_slips_then_turns_back() {
     let sticking = drag(0.02);
     assert!(sticking.indenter_force_n.x > 0.0, "the gel is dragged along");
     assert!(mobilised(&sticking) < 0.9);
-    // While it sticks, twice as far is twice the force.
+    // While it sticks, twice the distance gives twice the force.
     let twice = drag(0.04).indenter_force_n.x / sticking.indenter_force_n.x;
     assert!((twice - 2.0).abs() < 0.2, "{twice}");
     let mut slipping = sticking;
@@ -104,7 +104,8 @@ fn a_dragged_plate_sticks_then_slips_then_turns_back() {
 
 #[test]
 fn a_twisted_punch_reaches_the_torque_of_its_pressure() {
-    // Under a sharp flat punch that twists freely: μ ∫ p r dA; 2/3 μ N R for even pressure, which a stiff thin layer of low Poisson's ratio has.
+    // The torque under a sharp flat punch that twists with full slip is μ ∫ p r dA. For even
+    // pressure, which a stiff thin layer of low Poisson's ratio has, this is 2/3 μ N R.
     let radius_mm = 5.0;
     let mesh = block(&even(-7.0, 7.0, 21), &even(-7.0, 7.0, 21), &even(0.0, 0.5, 1));
     let body = SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.01), rough()).unwrap();
@@ -142,7 +143,7 @@ fn a_closed_loop_gives_no_energy() {
     for (depth_mm, aside_mm) in [(0.5, 0.01), (0.5, 0.3), (1.0, 0.6)] {
         let mut state = body.rest();
         let ball = Ball { radius_mm: 5.0 };
-        // Down, aside, up, back: in small steps, the work by the trapezoidal rule.
+        // Down, sideways, up and back in small steps, with the work by the trapezoidal rule.
         let corners = [
             [0.0, 0.0],
             [0.0, 1.0],
@@ -175,7 +176,7 @@ fn a_closed_loop_gives_no_energy() {
 
 #[test]
 fn left_and_right_are_the_same() {
-    // What is left of penetration depends on the order of nodes; here it is not to matter.
+    // The penetration that remains depends on the order of nodes; here it must not matter.
     let body = gel(SolverSettings {
         tolerance: 1e-8,
         penetration_mm: 5e-5,
@@ -217,7 +218,7 @@ fn a_held_press_holds_still() {
     }
     let at_mm = DVec3::new(0.1, 0.0, -0.8);
     step(&body, &mut state, &ball, at_mm, 0.0);
-    // The first step on the spot takes up what penetration is left.
+    // The first step without motion removes the penetration that remains.
     let first = step(&body, &mut state, &ball, at_mm, 0.0);
     let mut last = first;
     for _ in 0..50 {

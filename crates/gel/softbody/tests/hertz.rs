@@ -1,5 +1,5 @@
-//! A ball on a large block, against Hertz (1881) with the correction of Dimitriadis et al. (Biophys. J. 82, 2002) for a layer bonded
-//! to a rigid board.
+//! A ball on a large block, compared with Hertz (1881), with the correction of Dimitriadis et al.
+//! (Biophys. J. 82, 2002) for a layer that is bonded to a rigid board.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -14,7 +14,7 @@ const RADIUS_MM: f64 = 20.0;
 const DEPTH_MM: f64 = 0.2;
 const YOUNGS_KPA: f64 = 70.0;
 
-/// Contact radius by Hertz: a tenth of the ball's.
+/// Contact radius according to Hertz: a tenth of the ball's radius.
 fn contact_radius_mm() -> f64 {
     (RADIUS_MM * DEPTH_MM).sqrt()
 }
@@ -31,7 +31,8 @@ fn closed_form_n(poissons: f64, thickness_mm: f64) -> f64 {
     hertz_n * correction
 }
 
-/// Relative error in force, with this many edges along the contact radius; displacements have twice as many.
+/// Relative error in force with this number of edges along the contact radius; displacements have
+/// twice as many.
 fn error(poissons: f64, edges: f64) -> f64 {
     let a = contact_radius_mm();
     let size_mm = 12.0 * a;

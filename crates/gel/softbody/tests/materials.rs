@@ -1,4 +1,4 @@
-//! What materials promise beyond their stress: a way through inverted tetrahedra.
+//! A property of materials beyond their stress: whether they can pass through inverted tetrahedra.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -9,7 +9,8 @@ use glam::DVec3;
 use twintac_material::{NeoHookean, StableNeoHookean};
 use twintac_softbody::{Frame, Material, Model, SoftBody, SolveError, SolverSettings};
 
-/// Squeezes a block bonded at its bottom and its top, so that it has to bulge, in equal steps; the force on its top, N, and the last step.
+/// Squeezes a block that is bonded at its bottom and its top, so that it has to bulge, in equal
+/// steps. Returns the force on its top, N, and the last step.
 fn squeeze(
     model: Model,
     bulk_modulus_kpa: f64,
@@ -19,7 +20,7 @@ fn squeeze(
     let [x, y] = [0, 1].map(|axis| even(0.0, 8.0, cells[axis]));
     let mut mesh = block(&x, &y, &even(0.0, 4.0, cells[2]));
     bond(&mut mesh, |at| at.z == 0.0 || at.z == 4.0);
-    // Steps are taken whole or not at all.
+    // Steps are done as a whole or not at all.
     let settings = SolverSettings {
         min_substep: 1.0,
         ..SolverSettings::default()
@@ -54,7 +55,7 @@ fn squeeze(
 fn the_stable_energy_finds_its_way_through_inverted_tetrahedra() {
     let squeeze = |model: Model, n_steps| squeeze(model, 1200.0, [4, 4, 2], (1.5, n_steps));
     let shear_modulus_kpa = 23.5;
-    // In one step, the top goes past the next nodes below.
+    // In one step, the top moves past the next nodes below.
     let plain = squeeze(NeoHookean { shear_modulus_kpa }.into(), 1);
     assert!(matches!(plain, Err(SolveError::Inverted { .. })), "{plain:?}");
     let stable: Model = StableNeoHookean { shear_modulus_kpa }.into();

@@ -1,4 +1,4 @@
-//! Bodies that are too thin for a step, or for the mesh.
+//! Shapes that are too thin for a step, or for the mesh.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -16,7 +16,8 @@ fn gel(settings: SolverSettings) -> SoftBody {
     SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.45), settings).unwrap()
 }
 
-/// A plate at the end of a stem that stands so high that the box around both does not tell how thin it is.
+/// A plate at the end of a stem, which is so high that the box around both does not show how thin
+/// the plate is.
 struct OnStem(Box<dyn SignedDistance>);
 
 impl SignedDistance for OnStem {
@@ -51,7 +52,7 @@ fn a_node_does_not_come_to_the_other_side_of_a_plate() {
     .unwrap()
     .indenter_force_n
     .z;
-    // In one step of 0.5 mm, nodes are nearer to the upper side.
+    // After one step of 0.5 mm, nodes are nearer to the upper side.
     let at_once = gel(SolverSettings {
         min_substep: 1.0,
         ..SolverSettings::default()
@@ -64,7 +65,7 @@ fn a_node_does_not_come_to_the_other_side_of_a_plate() {
         panic!("{error}");
     };
     assert!((thickness_mm - 0.2).abs() < 0.1, "{error}");
-    // The state is as before, and smaller steps arrive.
+    // The state is as before, and smaller steps succeed.
     assert_eq!(state.displacements_mm(), at_once.rest().displacements_mm());
     let in_parts = gel(SolverSettings::default());
     let mut state = in_parts.rest();
@@ -75,7 +76,7 @@ fn a_node_does_not_come_to_the_other_side_of_a_plate() {
         .indenter_force_n
         .z;
     println!("{thin_n} N, thick {thick_n} N");
-    // With edges of a millimetre, gel beside the plate folds over it by more or less than it should.
+    // With edges of a millimetre, gel beside the plate folds over it more or less than it should.
     assert!((thin_n / thick_n - 1.0).abs() < 0.15);
 }
 

@@ -12,15 +12,16 @@ use twintac_softbody::{Frame, Material, PronyTerm, SoftBody, SolveError, SolverS
 
 const BALL: Ball = Ball { radius_mm: 12.5 };
 
-/// Worst relative errors in force and pressure against the converged results of two other codes (20-node hexahedra, and quadratic
-/// tetrahedra with a pressure field): 34 × 18 × 8.5 mm, E = 70 kPa, ν = 0.49, pressure at the bottom over a disc of 1 mm.
+/// Worst relative errors in force and pressure, compared with the converged results of two other
+/// programs (20-node hexahedra, and quadratic tetrahedra with a pressure field): 34 × 18 × 8.5 mm,
+/// E = 70 kPa, ν = 0.49, pressure at the bottom over a disc of 1 mm.
 fn errors(cells: [usize; 3]) -> [f64; 2] {
     let (x, y, z) = (
         even(-17.0, 17.0, cells[0]),
         even(-9.0, 9.0, cells[1]),
         even(0.0, 8.5, cells[2]),
     );
-    // The bottom nodes as the body has them, twice as close.
+    // The bottom nodes of the body, at half the spacing.
     let (fine_x, fine_y) = (even(-17.0, 17.0, 2 * cells[0]), even(-9.0, 9.0, 2 * cells[1]));
     let body = SoftBody::new(
         &block(&x, &y, &z),
@@ -55,7 +56,8 @@ fn errors(cells: [usize; 3]) -> [f64; 2] {
 
 #[test]
 fn force_and_pressure_agree_with_the_reference() {
-    // 7,315 nodes. The pressure converges with the square of the cells' size, here 2 mm throughout.
+    // 7,315 nodes. The pressure converges with the square of the cell size, which is 2 mm
+    // everywhere.
     let [force, pressure] = errors([17, 9, 5]);
     assert!(force < 0.025, "{force}");
     assert!(pressure < 0.075, "{pressure}");
@@ -87,7 +89,8 @@ fn forces_balance_against_board_and_walls() {
     let rotation = DQuat::from_rotation_y(0.1);
     let mut pushed_n = 0.0;
     for depth_mm in [0.5, 1.0, 1.5, 2.0, 2.5] {
-        // Off the centre, so that the walls' forces do not cancel, but nowhere in an endlessly high wall.
+        // Off the centre, so that the forces of the walls do not cancel, but nowhere in a wall,
+        // which has no upper end.
         let pose = Pose {
             position_mm: DVec3::new(2.5, 0.5, 6.0 - depth_mm),
             rotation,
@@ -96,7 +99,8 @@ fn forces_balance_against_board_and_walls() {
         assert_balanced(&frame);
         assert!(frame.penetration_mm <= 0.005, "{}", frame.penetration_mm);
         assert!(frame.smallest_volume_ratio > 0.0);
-        // A ball is the same however it is turned about its centre: no torque about it.
+        // A ball is the same for every rotation about its centre, so there is no torque about its
+        // centre.
         let lever = rotation * DVec3::Z * ball.radius_mm;
         let about_center = frame.indenter_torque_n_mm - lever.cross(frame.indenter_force_n);
         assert!(
@@ -110,7 +114,7 @@ fn forces_balance_against_board_and_walls() {
 
 #[test]
 fn a_small_ball_goes_deep() {
-    // Deeper than its radius, into 45 % of the gel.
+    // Deeper than its radius: 45 % of the gel's height.
     let half = graded(1.0, 2.0, 1.5, 8.0);
     let heights: Vec<f64> = graded(1.0, 2.0, 1.3, 5.0)
         .iter()
@@ -133,7 +137,7 @@ fn a_small_ball_goes_deep() {
         assert!(-frame.indenter_force_n.z > last_n);
         last_n = -frame.indenter_force_n.z;
     }
-    // All at once, from rest, must end in the same place.
+    // A single motion from rest must give the same result.
     let frame = press(&body, &mut body.rest(), &ball, 5.0, 2.25).unwrap();
     let ratio = -frame.indenter_force_n.z / last_n;
     assert!((ratio - 1.0).abs() < 0.005, "{ratio}");

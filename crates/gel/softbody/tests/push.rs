@@ -1,4 +1,4 @@
-//! Pressing with a given force.
+//! Presses with a given force.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -21,7 +21,7 @@ fn gel(prony: Vec<PronyTerm>) -> SoftBody {
     SoftBody::new(&mesh, material, exact()).unwrap()
 }
 
-/// What is left of penetration depends on the way to a depth; here it is not to matter.
+/// The penetration that remains depends on the path to a depth; here it must not matter.
 fn exact() -> SolverSettings {
     SolverSettings {
         penetration_mm: 5e-5,
@@ -37,7 +37,7 @@ fn down(force_n: f64) -> Push {
     }
 }
 
-/// Presses with a force; returns the force and the depth found.
+/// Presses with a force; returns the force and the depth that were found.
 fn push(body: &SoftBody, state: &mut State, push: &Push, time_s: f64) -> Result<(f64, f64), SolveError> {
     let touch = Pose::from_position(DVec3::Z * TOP_MM);
     let frame = body.advance_to_force(state, &BALL, &touch, push, time_s)?;
@@ -60,7 +60,7 @@ fn force_and_depth_belong_together() {
         let error = -driven.indenter_force_n.z / wanted_n - 1.0;
         assert!(error.abs() < 1e-4, "{error}");
     }
-    // From the air at once, and from a press that is too deep.
+    // From the air in one call, and from a press that is too deep.
     let (_, expected_mm) = push(&body, &mut body.rest(), &down(1.0), 0.0).unwrap();
     let mut state = body.rest();
     press(&body, &mut state, &BALL, TOP_MM, 2.5).unwrap();
@@ -80,7 +80,7 @@ fn a_viscoelastic_gel_creeps_under_a_held_force() {
         depths_mm.push(depth_mm);
     }
     assert!(depths_mm.windows(2).all(|pair| pair[1] > pair[0]));
-    // In the end the gel is as deep as one whose shear modulus has lost the relaxing part.
+    // In the end the gel is as deep as one whose shear modulus is smaller by the relaxing fraction.
     let relaxed = Material {
         bulk_modulus_kpa: body.material().bulk_modulus_kpa,
         ..Material::neo_hookean(70.0 * (1.0 - weight), 0.49)

@@ -1,4 +1,4 @@
-//! Rates of a press against differences of whole presses.
+//! Derivatives of a press, compared with differences of whole presses.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 #![allow(clippy::needless_range_loop)] // tables are read with indices
@@ -16,7 +16,7 @@ use twintac_softbody::{Direction, Material, Model, PronyTerm, SoftBody, SoftBody
 const BALL: Ball = Ball { radius_mm: 6.0 };
 const HEIGHT_MM: f64 = 6.0;
 
-/// Depths, mm, at times, s: down, held, and half up again.
+/// Depths, mm, at times, s: loading, hold, and unloading by half.
 const PRESS: [(f64, f64); 7] = [
     (0.1, 0.2),
     (0.2, 0.5),
@@ -27,7 +27,7 @@ const PRESS: [(f64, f64); 7] = [
     (3.3, 0.8),
 ];
 
-/// A block between four walls that it leans on when pressed.
+/// A block between four walls, which it touches when pressed.
 fn body(material: &Material) -> SoftBody {
     let mesh = block(&even(-8.0, 8.0, 6), &even(-7.0, 7.0, 5), &even(0.0, HEIGHT_MM, 2));
     let settings = SolverSettings {
@@ -50,7 +50,8 @@ fn body(material: &Material) -> SoftBody {
     })
 }
 
-/// Force, N, and pressure at a node of the bottom, kPa, in every frame; then their rates along each direction.
+/// Force, N, and pressure at a node of the bottom, kPa, in every frame, followed by their
+/// derivatives along each direction.
 fn press(material: &Material, shift_mm: f64, directions: &[Direction]) -> Vec<Vec<[f64; 2]>> {
     let body = body(material);
     let node = body
@@ -80,7 +81,8 @@ fn press(material: &Material, shift_mm: f64, directions: &[Direction]) -> Vec<Ve
     frames
 }
 
-/// A parameter: its name, a difference to take, and what it does to a material and to the depth, mm.
+/// A parameter: its name, the step of a difference, and a function that changes a material by it
+/// and returns the change of the depth, mm.
 type Parameter<'a> = (&'a str, f64, &'a dyn Fn(&mut Material, f64) -> f64);
 
 fn compare(material: &Material, parameters: &[Parameter]) {
@@ -208,7 +210,7 @@ fn rates_of_a_relaxing_press_are_differences_of_presses() {
 
 #[test]
 fn a_stiffer_gel_of_the_same_kind_moves_alike() {
-    // All constants in proportion: forces rise in proportion, and nothing moves.
+    // All constants in proportion: forces rise in proportion, and displacements do not change.
     let alike = Direction {
         materials: [0.999, 1.001].map(|times| Material::neo_hookean(60.0 * times, 0.48)),
         step: 0.001,

@@ -73,7 +73,7 @@ pub(crate) fn switch() -> Device {
             silk: vec![
                 [[-2.0, -4.03], [2.2, -4.03]],
                 [[-2.2, 4.03], [2.2, 4.03]],
-                [[-3.6, -4.03], [-2.4, -4.03]], // pin 1
+                [[-3.6, -4.03], [-2.4, -4.03]], // at pin 1
             ],
             bridge: None,
             is_placed: true,
@@ -82,8 +82,8 @@ pub(crate) fn switch() -> Device {
     }
 }
 
-/// JST-SH with four pins, side entry, in the order that Qwiic and STEMMA QT share. The mouth is at
-/// the largest y.
+/// JST-SH connector with four pins and side entry, in the pin order that Qwiic and STEMMA QT share.
+/// Its opening is at the largest y.
 pub(crate) fn connector() -> Device {
     use Electrical::Passive;
     let table = [
@@ -117,7 +117,7 @@ pub(crate) fn connector() -> Device {
             silk: vec![
                 [[-3.11, 0.715], [-3.11, -1.785]],
                 [[-3.11, -1.785], [-2.06, -1.785]],
-                [[-2.06, -1.785], [-2.06, -2.775]], // pin 1
+                [[-2.06, -1.785], [-2.06, -2.775]], // at pin 1
                 [[3.11, 0.715], [3.11, -1.785]],
                 [[3.11, -1.785], [2.06, -1.785]],
                 [[-1.94, 2.685], [1.94, 2.685]],
@@ -129,5 +129,6 @@ pub(crate) fn connector() -> Device {
     }
 }
 
-/// How far copper and mouth of the connector reach from its centre towards the edge, mm.
+/// Distance from the connector's centre to the end of its copper and its opening, towards the edge,
+/// mm.
 pub(crate) const CONNECTOR_REACH_MM: f64 = 2.775;

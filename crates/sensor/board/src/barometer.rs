@@ -1,4 +1,4 @@
-//! The barometers whose land patterns are known, or are guessed and say so.
+//! The barometers whose land pattern is known, or is a guess that is marked as one.
 
 use glam::DVec2;
 
@@ -7,7 +7,7 @@ use crate::device::{Device, Electrical, pins};
 use crate::land::{Land, Pad};
 use crate::shapes::Area;
 
-/// A barometer as a part of a board.
+/// A barometer as a part of the board.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Barometer {
     /// The manufacturer's name.
@@ -15,14 +15,14 @@ pub(crate) struct Barometer {
     pub(crate) device: Device,
     /// Size of its body, mm.
     pub(crate) body_mm: [f64; 2],
-    /// How far its port stands above the board, mm.
+    /// Height of its port above the board, mm.
     pub(crate) height_mm: f64,
-    /// Whether land pattern, pins and height are those of a data sheet.
+    /// Whether land pattern, pins and height come from a data sheet.
     pub(crate) is_confirmed: bool,
 }
 
 impl Barometer {
-    /// The barometer of a name.
+    /// The barometer with this name.
     pub(crate) fn named(name: &str) -> Result<Self, BoardError> {
         let all = [ms5837("MS5837-30BA"), ms5837("MS5837-02BA"), cps135b()];
         let known: Vec<&str> = all.iter().map(|chip| chip.name).collect();
@@ -57,7 +57,7 @@ fn land(
     }
 }
 
-/// A mark beside pin 1, at the upper left corner of the room.
+/// A mark beside pin 1, at the upper left corner of the courtyard.
 fn corner_mark(land: &mut Land) {
     let corner = land.courtyard.min;
     land.silk = vec![
@@ -105,10 +105,10 @@ fn ms5837(name: &'static str) -> Barometer {
 }
 
 /// Consensic's CPS135B, the chip of the TwinTac paper. **To be confirmed**: no land pattern, pin
-/// order or height is public. The pads are those of its sibling CPS123 (two rows of four, 0.65 mm
-/// pitch, 1.45 mm apart); the pin order, the body and the height are guesses. The land pattern of
-/// the chips that share its registers (XGZP6897, pads over 11.5 mm) does not fit the paper's pitch
-/// of 8 mm.
+/// order or height is public. The pads are those of the related CPS123 (two rows of four, pitch
+/// 0.65 mm, rows 1.45 mm apart). The pin order, the body and the height are guesses. The land
+/// pattern of the chips with the same registers (XGZP6897, pads over 11.5 mm) does not fit the
+/// paper's pitch of 8 mm.
 fn cps135b() -> Barometer {
     use Electrical::{Input, Supply, TwoWay, Unused};
     let column = |index: u8| f64::from(index) * 0.65 - 0.975;

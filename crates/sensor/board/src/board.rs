@@ -1,4 +1,4 @@
-//! A board: circuit, places, tracks, pour and texts.
+//! A board: circuit, placement, tracks, ground pour and texts.
 
 use std::collections::BTreeMap;
 
@@ -26,20 +26,20 @@ pub struct Board {
     chip: Barometer,
 }
 
-/// Parts of one kind that have to be bought.
+/// Parts of one kind to buy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartLine {
     /// Their references, such as `C1`.
     pub references: Vec<String>,
     /// The value on the schematic.
     pub value: String,
-    /// What the list of parts with numbers and prices calls it.
+    /// The name of the part in the list of parts with numbers and prices.
     pub part: String,
     /// The land pattern.
     pub footprint: String,
 }
 
-/// Where a taxel's chip is joined to, to be compared with a netlist.
+/// The pins that a taxel's chip is connected to, for comparison with a netlist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TaxelWiring {
     /// The taxel's name.
@@ -55,10 +55,12 @@ pub struct TaxelWiring {
 }
 
 impl Board {
-    /// Makes the board of a sensor, all of whose taxels are chips of one name. Takes seconds.
+    /// Designs the board of a sensor. All taxels have the chip named `chip`. Takes seconds.
     ///
-    /// # Errors An unknown chip; taxels without a channel of a switch, or off the plane z = 0;
-    /// parts that collide or have no room; a net without a way.
+    /// # Errors
+    ///
+    /// An unknown chip; a taxel without a channel of a switch, or with its port off the plane z =
+    /// 0; parts that collide, or for which there is no room; a net that cannot be routed.
     pub fn design(variant: &str, sensor: &Sensor, chip: &str) -> Result<Self, BoardError> {
         let chip = Barometer::named(chip)?;
         let circuit = Circuit::new(sensor, &chip)?;
@@ -114,20 +116,21 @@ impl Board {
         })
     }
 
-    /// The files of the KiCad 9 project by their paths in its folder; the same board gives the same
-    /// bytes.
+    /// The files of the KiCad 9 project, by their paths in its folder. The same board gives the
+    /// same bytes.
     #[must_use]
     pub fn files(&self) -> BTreeMap<String, String> {
         kicad::project(&self.design)
     }
 
-    /// What the mechanics are made from. `sensor_sha256` is that of the description's file.
+    /// The geometry that the mechanics are made from. `sensor_sha256` is the SHA-256 of the
+    /// description's file.
     #[must_use]
     pub fn geometry(&self, sensor_sha256: &str) -> Geometry {
         Geometry::new(&self.design, &self.sensor, &self.chip, sensor_sha256)
     }
 
-    /// Whether the land pattern of the barometers is that of a data sheet.
+    /// Whether the land pattern of the barometers comes from a data sheet.
     #[must_use]
     pub fn is_footprint_confirmed(&self) -> bool {
         self.chip.is_confirmed
@@ -154,7 +157,7 @@ impl Board {
         lines
     }
 
-    /// How the description wants the taxels wired, by pins of the schematic.
+    /// The wiring of the taxels that the description asks for, by pins of the schematic.
     #[must_use]
     pub fn wiring(&self) -> Vec<TaxelWiring> {
         let number = |part: usize, name: &str| {
@@ -183,7 +186,7 @@ impl Board {
     }
 }
 
-/// All pads, and the copper that joins pads of jumpers.
+/// All pads, and the copper bridges of jumpers.
 fn pads(circuit: &Circuit, places: &[Placement], number: &dyn Fn(&str) -> Option<usize>) -> Vec<PadCopper> {
     let mut pads = Vec::new();
     for (part, place) in circuit.parts.iter().zip(places) {
@@ -250,7 +253,7 @@ fn texts(
             false,
         );
         for (bit, jumper) in switch.jumpers.into_iter().enumerate() {
-            // "1": the end that is joined to the supply.
+            // "1" marks the end that is connected to the supply.
             let land = &circuit.parts[jumper].device.land;
             want(ADDRESS[bit], places[jumper].at, Side::Bottom, 0.8, false);
             want(

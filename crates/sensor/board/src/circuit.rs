@@ -1,4 +1,4 @@
-//! What is joined to what: parts and nets, from a sensor's taxels.
+//! The circuit: parts and nets, from a sensor's taxels.
 
 use std::collections::BTreeMap;
 
@@ -20,19 +20,19 @@ pub(crate) struct Part {
     pub(crate) reference: String,
     pub(crate) value: String,
     pub(crate) device: Device,
-    /// The net of each pin, in the order of the device's pins; `None` for a pin that is left open.
+    /// The net of each pin, in the order of the device's pins. `None` for an unconnected pin.
     pub(crate) nets: Vec<Option<String>>,
 }
 
 impl Part {
-    /// The net of a pad; `None` where the pad is left open.
+    /// The net of a pad. `None` for an unconnected pad.
     pub(crate) fn net_of_pad(&self, number: &str) -> Option<&str> {
         let index = self.device.pins.iter().position(|pin| pin.number == number)?;
         self.nets[index].as_deref()
     }
 }
 
-/// Indices of parts that stand together.
+/// Indices of the parts of one taxel.
 #[derive(Clone, Debug)]
 pub(crate) struct TaxelParts {
     pub(crate) chip: usize,
@@ -40,13 +40,13 @@ pub(crate) struct TaxelParts {
     pub(crate) pull_ups: [usize; 2],
 }
 
-/// A switch and what belongs to it.
+/// Indices of a switch and of the parts that belong to it.
 #[derive(Clone, Debug)]
 pub(crate) struct SwitchParts {
     pub(crate) switch: usize,
     pub(crate) capacitor: usize,
     pub(crate) jumpers: [usize; 3],
-    /// The taxels behind it, indices.
+    /// Indices of the taxels behind it.
     pub(crate) taxels: Vec<usize>,
 }
 
@@ -57,9 +57,9 @@ pub(crate) struct Circuit {
     pub(crate) taxels: Vec<TaxelParts>,
     pub(crate) switches: Vec<SwitchParts>,
     pub(crate) connector: usize,
-    /// What stands at the connector: two trunk pull-ups, 10 uF and 100 nF.
+    /// Indices of the parts at the connector: two trunk pull-ups, 10 uF and 100 nF.
     pub(crate) at_connector: [usize; 4],
-    /// The reset line's pull-up and its test pad.
+    /// Indices of the reset line's pull-up and test pad.
     pub(crate) reset: [usize; 2],
 }
 
@@ -109,7 +109,7 @@ impl Circuit {
         })
     }
 
-    /// All nets in the order of their names; ground and supply come first.
+    /// All nets in the order of their names, with ground and supply first.
     pub(crate) fn nets(&self) -> Vec<String> {
         let parts = self.parts.iter();
         let mut nets: Vec<String> = parts
@@ -153,7 +153,7 @@ fn clock_net(taxel: &Taxel) -> String {
     format!("SCL_{}", taxel.name)
 }
 
-/// Makes parts, and counts their references.
+/// Creates parts and numbers their references.
 #[derive(Default)]
 struct Maker {
     parts: Vec<Part>,
@@ -161,7 +161,7 @@ struct Maker {
 }
 
 impl Maker {
-    /// A part whose pins have nets by their names.
+    /// Adds a part. `net` gives the net of each pin by the pin's name. Returns the part's index.
     fn part(&mut self, device: Device, value: &str, net: impl Fn(&str) -> Option<String>) -> usize {
         let count = self.counts.entry(device.prefix).or_default();
         *count += 1;

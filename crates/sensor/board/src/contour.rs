@@ -1,4 +1,4 @@
-//! Where a field on grid points is positive, as polygons.
+//! The regions where a field on grid points is positive, as polygons.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use glam::DVec2;
 use crate::route::Grid;
 use crate::shapes::to_segment;
 
-/// Points that are farther from the line between their neighbours are kept, mm.
+/// A point is kept if its distance from the line between its neighbours is larger than this, mm.
 const STRAIGHT_MM: f64 = 0.003;
-/// Polygons of less are left out, mm².
+/// Smaller polygons are left out, mm².
 const SMALLEST_MM2: f64 = 0.3;
 
-/// One border, without holes: they are joined to it by slits.
+/// A border without holes: holes are connected to it by slits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Polygon {
     pub(crate) points: Vec<DVec2>,
@@ -38,16 +38,16 @@ fn edges(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     points.iter().zip(next).map(|(from, to)| (*from, *to))
 }
 
-/// Twice the area, positive where the border runs counter-clockwise.
+/// Twice the area; positive if the border runs counter-clockwise.
 fn doubled_area(points: &[DVec2]) -> f64 {
     edges(points).map(|(from, to)| from.perp_dot(to)).sum()
 }
 
-/// A place between two neighbouring grid points, by the lower of them and whether the other is
-/// above it.
+/// A crossing of the border between two neighbouring grid points: the lower point, and whether the
+/// other one is above it (else to its right).
 type Crossing = (usize, bool);
 
-/// The borders of where a field is positive, what is positive to the left.
+/// The borders of the regions where the field is positive. The positive side is to the left.
 pub(crate) fn loops(grid: &Grid, field: &[f64]) -> Vec<Vec<DVec2>> {
     let mut next: BTreeMap<Crossing, Crossing> = BTreeMap::new();
     for row in 0..grid.rows - 1 {
@@ -73,11 +73,11 @@ pub(crate) fn loops(grid: &Grid, field: &[f64]) -> Vec<Vec<DVec2>> {
 fn place(grid: &Grid, field: &[f64], (node, is_up): Crossing) -> DVec2 {
     let other = if is_up { node + grid.columns } else { node + 1 };
     let (low, high) = (field[node], field[other]);
-    let part = (low / (low - high)).clamp(0.02, 0.98); // no two points of a border coincide
+    let part = (low / (low - high)).clamp(0.02, 0.98); // so that no two points of a border coincide
     grid.at(node).lerp(grid.at(other), part)
 }
 
-/// The lines of the border in one square of the grid, whose lowest corner is `node`.
+/// The lines of the border in one grid square, whose lowest corner is `node`.
 fn lines(grid: &Grid, field: &[f64], node: usize) -> Vec<(Crossing, Crossing)> {
     let corners = [node, node + 1, node + 1 + grid.columns, node + grid.columns];
     let is_in = corners.map(|corner| field[corner] > 0.0);
@@ -96,14 +96,14 @@ fn lines(grid: &Grid, field: &[f64], node: usize) -> Vec<(Crossing, Crossing)> {
         [false, true, true, true] => vec![(left, below)],
         [true, false, true, true] => vec![(below, right)],
         [true, true, false, true] => vec![(right, above)],
-        // What is free on a diagonal alone is not joined.
+        // Regions that touch only at a diagonal are not connected.
         [true, false, true, false] => vec![(below, left), (above, right)],
         [false, true, false, true] => vec![(right, below), (left, above)],
         [true, true, true, true] | [false, false, false, false] => Vec::new(),
     }
 }
 
-/// Borders and the holes in them, each made one polygon.
+/// Polygons from borders and the holes in them.
 pub(crate) fn polygons(loops: Vec<Vec<DVec2>>) -> Vec<Polygon> {
     let simple = loops.into_iter().map(|points| straightened(&points));
     let (outer, holes): (Vec<_>, Vec<_>) = simple
@@ -113,7 +113,7 @@ pub(crate) fn polygons(loops: Vec<Vec<DVec2>>) -> Vec<Polygon> {
         .into_iter()
         .filter(|points| doubled_area(points) > 2.0 * SMALLEST_MM2)
         .collect();
-    // A hole is of the smallest border that holds it.
+    // A hole belongs to the smallest border around it.
     let mut holes_of: Vec<Vec<Vec<DVec2>>> = vec![Vec::new(); outer.len()];
     for hole in holes {
         let around = (0..outer.len()).filter(|border| is_inside(&outer[*border], hole[0]));
@@ -130,7 +130,7 @@ pub(crate) fn polygons(loops: Vec<Vec<DVec2>>) -> Vec<Polygon> {
         .collect()
 }
 
-/// Joins holes to their border by level slits to the left of each hole's leftmost point.
+/// Connects holes to their border by horizontal slits to the left of each hole's leftmost point.
 fn with_slits(mut border: Vec<DVec2>, mut holes: Vec<Vec<DVec2>>) -> Vec<DVec2> {
     for hole in &mut holes {
         let leftmost = (0..hole.len()).min_by(|one, two| hole[*one].x.total_cmp(&hole[*two].x));
@@ -155,12 +155,12 @@ fn with_slits(mut border: Vec<DVec2>, mut holes: Vec<Vec<DVec2>>) -> Vec<DVec2> 
     border
 }
 
-/// Without the points that lie on the line between others.
+/// The border without points that lie on the line between others.
 fn straightened(points: &[DVec2]) -> Vec<DVec2> {
     if points.len() < 4 {
         return points.to_vec();
     }
-    // Two points that stay: one, and the farthest from it.
+    // Two points that are always kept: the first one, and the one farthest from it.
     let farthest = (0..points.len())
         .max_by(|one, two| {
             let from = |index: &usize| points[*index].distance(points[0]);

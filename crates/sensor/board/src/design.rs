@@ -1,4 +1,4 @@
-//! What a board consists of, once it is placed and routed.
+//! A board after placement and routing.
 
 use crate::circuit::Circuit;
 use crate::label::Label;
@@ -7,15 +7,15 @@ use crate::outline::Outline;
 use crate::pour::Pour;
 use crate::route::Routed;
 
-/// A board, all of it.
+/// A complete board.
 #[derive(Clone, Debug)]
 pub(crate) struct Design {
     pub(crate) variant: String,
     pub(crate) circuit: Circuit,
-    /// Where each part of the circuit is.
+    /// The placement of each part of the circuit.
     pub(crate) places: Vec<Placement>,
     pub(crate) outline: Outline,
-    /// Names of nets by number.
+    /// Names of nets, by number.
     pub(crate) nets: Vec<String>,
     pub(crate) routed: Routed,
     pub(crate) pour: Pour,

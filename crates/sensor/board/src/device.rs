@@ -2,7 +2,7 @@
 
 use crate::land::Land;
 
-/// What a pin does, in KiCad's words for electrical rule checks.
+/// The electrical type of a pin, in KiCad's terms for electrical rule checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Electrical {
     Supply,
@@ -24,13 +24,13 @@ impl Electrical {
     }
 }
 
-/// A pin of a symbol. Its number is that of its pads.
+/// A pin of a symbol. Its number is also that of its pads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pin {
     pub(crate) number: &'static str,
     pub(crate) name: &'static str,
     pub(crate) electrical: Electrical,
-    /// Whether it is on the symbol's left.
+    /// Whether it is on the left side of the symbol.
     pub(crate) is_left: bool,
 }
 
@@ -39,11 +39,11 @@ pub(crate) struct Pin {
 pub(crate) struct Device {
     /// The symbol's name in the project's library.
     pub(crate) symbol: &'static str,
-    /// What references begin with.
+    /// The prefix of references.
     pub(crate) prefix: &'static str,
     pub(crate) pins: Vec<Pin>,
     pub(crate) land: Land,
-    /// What it is called in the list of parts to buy; nothing for what is only copper.
+    /// The name in the list of parts to buy. `None` for a part that is only copper.
     pub(crate) bought: Option<&'static str>,
 }
 
@@ -53,7 +53,7 @@ impl Device {
     }
 }
 
-/// Pins of one side of a symbol, from a table of numbers, names and what they do.
+/// Pins of one side of a symbol, from a table of numbers, names and electrical types.
 pub(crate) fn pins(is_left: bool, table: &[(&'static str, &'static str, Electrical)]) -> Vec<Pin> {
     table
         .iter()

@@ -2,16 +2,16 @@
 
 use thiserror::Error;
 
-/// Why no board can be made of a description, and what to do.
+/// Why a board cannot be made from a description, and what to change.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoardError {
-    /// The land pattern of a chip is not in the table.
-    #[error("the land pattern of `{name}` is not known here; give one of {known}")]
+    /// The chip's land pattern is not in the table.
+    #[error("the land pattern of `{name}` is unknown; give one of {known}")]
     UnknownChip {
         /// The chip's name.
         name: String,
-        /// The names that are known.
+        /// The known names.
         known: String,
     },
     /// A taxel is not behind a switch.
@@ -35,7 +35,7 @@ pub enum BoardError {
         /// The switch's address.
         switch: u8,
     },
-    /// A taxel's port is not in the plane z = 0, where the board's chips end.
+    /// A taxel's port is not in the plane z = 0, in which the board's chips end.
     #[error("the port of taxel `{taxel}` is at z = {z_mm} mm; a flat board has all ports at z = 0")]
     PortNotInPlane {
         /// The taxel's name.
@@ -43,7 +43,7 @@ pub enum BoardError {
         /// Its height, mm.
         z_mm: f64,
     },
-    /// Two chips are on each other.
+    /// The courtyards of two chips overlap.
     #[error(
         "the chips of taxels `{taxel}` and `{other}` collide: they are {apart_mm} mm apart and need \
         {need_mm:.2} mm along x or y; give a larger pitch or a smaller chip"
@@ -53,12 +53,12 @@ pub enum BoardError {
         taxel: String,
         /// The other taxel's name.
         other: String,
-        /// Distance of their centres along x and along y, mm.
+        /// Distance of their centres along x and y, mm.
         apart_mm: String,
-        /// What they need along one of the two, mm.
+        /// The distance that they need along one of the two axes, mm.
         need_mm: f64,
     },
-    /// A part has no place on the board's bottom face.
+    /// There is no room for a part on the board's bottom face.
     #[error(
         "there is no room for {part} on the bottom face, {size_mm} mm; make the gel's footprint larger or give \
         fewer taxels"
@@ -66,22 +66,22 @@ pub enum BoardError {
     NoRoom {
         /// The part.
         part: String,
-        /// The size of the board's middle part, mm.
+        /// Size of the board's middle part, mm.
         size_mm: String,
     },
-    /// The router found no way for a net.
+    /// The router found no path for a net.
     #[error(
-        "net {net} cannot be routed: no way is left from {from} to {to}{across}; give a larger pitch or a \
+        "net {net} cannot be routed: no path is left from {from} to {to}{across}; give a larger pitch or a \
         larger footprint of the gel"
     )]
     NoRoute {
         /// The net.
         net: String,
-        /// Where the way begins.
+        /// Where the path begins.
         from: String,
         /// Where it should end.
         to: String,
-        /// What is in the way.
+        /// The nets that are in the way.
         across: String,
     },
 }

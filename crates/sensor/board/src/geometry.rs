@@ -1,5 +1,5 @@
-//! What the mechanics around a board are made from: all lengths in mm, z up, z = 0 in the plane of
-//! the ports.
+//! The geometry that the mechanics around a board are made from. All lengths are in mm. z points
+//! up, and z = 0 is the plane of the ports.
 
 use serde::{Deserialize, Serialize};
 use twintac_sensor::Sensor;
@@ -10,44 +10,44 @@ use crate::design::Design;
 use crate::outline::SHELL_WALL_MM;
 use crate::rules::{SCREW_DRILL_MM, THICKNESS_MM};
 
-/// A board and the gel that stands on it.
+/// A board and the gel on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Geometry {
     /// The variant's name.
     pub variant: String,
-    /// What the sensor is, in a sentence or two.
+    /// A description of the sensor in a sentence or two.
     pub summary: String,
     /// SHA-256 of the description's file.
     pub sensor_sha256: String,
     /// The gel.
     pub gel: GelGeometry,
-    /// The shell, where the description has one.
+    /// The shell, if the description has one.
     pub shell: Option<ShellGeometry>,
-    /// Where pressure is felt.
+    /// The taxels' ports.
     pub taxels: Vec<TaxelGeometry>,
     /// The barometers.
     pub chip: ChipGeometry,
     /// The board.
     pub board: BoardGeometry,
-    /// What the sensor is pressed with.
+    /// The indenters.
     pub indenters: Vec<IndenterGeometry>,
 }
 
 /// The gel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GelGeometry {
-    /// Its shape, as the description has it.
+    /// Its shape, as described.
     pub solid: Solid,
     /// Its volume, mm³.
     pub volume_mm3: f64,
-    /// The smallest box that holds it: lowest and highest corner, mm.
+    /// Its bounding box: lowest and highest corner, mm.
     pub bounds_mm: [[f64; 3]; 2],
 }
 
 /// The shell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShellGeometry {
-    /// Distance from the gel's footprint to the walls, mm.
+    /// Distance from the gel's outline to the walls, mm.
     pub gap_mm: f64,
     /// Height of the walls above the ports, mm.
     pub height_mm: f64,
@@ -55,7 +55,7 @@ pub struct ShellGeometry {
     pub wall_mm: f64,
 }
 
-/// A port.
+/// A taxel's port.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TaxelGeometry {
     /// Its name.
@@ -75,9 +75,9 @@ pub struct ChipGeometry {
     pub body_mm: [f64; 2],
     /// Height above the board, mm.
     pub height_mm: f64,
-    /// Radius of the ports as the description has it; the largest, mm.
+    /// Radius of the ports as described, mm; the largest one.
     pub port_radius_mm: f64,
-    /// Whether the land pattern and the height are those of a data sheet.
+    /// Whether land pattern and height come from a data sheet.
     pub footprint_confirmed: bool,
 }
 
@@ -92,7 +92,7 @@ pub struct BoardGeometry {
     pub top_z_mm: f64,
     /// Holes for screws.
     pub holes: Vec<HoleGeometry>,
-    /// What stands on the bottom face, but for the connector.
+    /// The parts on the bottom face, without the connector.
     pub bottom_parts: Vec<PartGeometry>,
     /// The connector, on the bottom face.
     pub connector: ConnectorGeometry,
@@ -109,14 +109,14 @@ pub struct HoleGeometry {
     pub screw: String,
 }
 
-/// A part's body.
+/// The body of a part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PartGeometry {
     /// Its reference.
     pub reference: String,
     /// Centre of the body, mm.
     pub center_mm: [f64; 2],
-    /// Width along x, depth along y, height, mm.
+    /// Width along x, depth along y, and height, mm.
     pub size_mm: [f64; 3],
 }
 
@@ -127,18 +127,18 @@ pub struct ConnectorGeometry {
     pub reference: String,
     /// Centre of the body, mm.
     pub center_mm: [f64; 2],
-    /// Width along x, depth along y, height, mm.
+    /// Width along x, depth along y, and height, mm.
     pub size_mm: [f64; 3],
-    /// Where the cable comes from.
+    /// Direction of the connector's opening: the cable comes from there.
     pub opens_toward: [i8; 2],
 }
 
-/// Something that the sensor is pressed with.
+/// An indenter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IndenterGeometry {
     /// Its name.
     pub name: String,
-    /// Its shape, as the description has it.
+    /// Its shape, as described.
     pub shape: Shape,
 }
 
@@ -211,7 +211,7 @@ impl Geometry {
     }
 }
 
-/// The connector, and the other parts on the bottom face. The first parts are the chips.
+/// The connector, and the other parts on the bottom face. The first `n_chips` parts are the chips.
 fn on_bottom(board: &Design, n_chips: usize) -> (PartGeometry, Vec<PartGeometry>) {
     let geometry = |index: usize| {
         let (part, place) = (&board.circuit.parts[index], &board.places[index]);
@@ -239,7 +239,8 @@ fn hole(at: &glam::DVec2) -> HoleGeometry {
     }
 }
 
-/// To a millionth of a millimetre: sums of decimals become decimals again.
+/// Rounds to a millionth of a millimetre, so that sums of decimal numbers are decimal numbers
+/// again.
 fn rounded<const N: usize>(values: [f64; N]) -> [f64; N] {
     values.map(|value| (value * 1e6).round() / 1e6 + 0.0)
 }

@@ -1,4 +1,4 @@
-//! Texts of the silk screen, where they cover neither pads nor holes nor each other.
+//! Texts of the silk screen, placed where they cover no pads, no holes and no other texts.
 
 use glam::DVec2;
 
@@ -9,11 +9,12 @@ use crate::route::Routed;
 use crate::rules::{EDGE_CLEARANCE_MM, SCREW_FREE_MM, VIA_MM};
 use crate::shapes::Area;
 
-/// Width of a character beside its height; the stroke font's widest are a little narrower.
+/// Width of a character divided by its height. The widest characters of the stroke font are a
+/// little narrower.
 const WIDTH: f64 = 0.98;
-/// What is left free about texts, mm.
+/// Free distance around texts, mm.
 const FREE_MM: f64 = 0.12;
-/// Steps of places that are tried, and how far from the wished place, mm.
+/// Step of the positions that are tried, and largest distance from the wanted position, mm.
 const STEP_MM: f64 = 0.25;
 const FAR_MM: f64 = 14.0;
 
@@ -24,7 +25,7 @@ pub(crate) struct Label {
     pub(crate) at: DVec2,
     pub(crate) side: Side,
     pub(crate) height_mm: f64,
-    /// Whether it is turned by a quarter.
+    /// Whether it is turned by 90°.
     pub(crate) is_upright: bool,
 }
 
@@ -41,18 +42,18 @@ impl Label {
     }
 }
 
-/// A text that wants a place.
+/// A text that needs a position.
 pub(crate) struct Wanted {
     pub(crate) text: String,
     pub(crate) near: DVec2,
     pub(crate) side: Side,
     pub(crate) height_mm: f64,
     pub(crate) is_upright: bool,
-    /// Whether it means something there alone, such as the name of a pin.
+    /// Whether its position is fixed, as for the name of a pin.
     pub(crate) is_fixed: bool,
 }
 
-/// Places texts in their order; one that finds no room is left out.
+/// Places texts in their order. A text without room is left out.
 pub(crate) fn place(
     wanted: Vec<Wanted>,
     circuit: &Circuit,
@@ -91,7 +92,7 @@ pub(crate) fn place(
     let mut labels = Vec::new();
     for wanted in wanted {
         if let Some(label) = taken.find(&wanted, outline) {
-            // Names of pins stand as close as the pins.
+            // Names of pins may be as close as the pins.
             let free = if wanted.is_fixed { -FREE_MM } else { FREE_MM };
             taken.solid.push((label.side, label.area().grown(free)));
             labels.push(label);
@@ -102,7 +103,7 @@ pub(crate) fn place(
 
 struct Taken {
     solid: Vec<(Side, Area)>,
-    /// Texts may lie on vias, which are covered, but better do not.
+    /// Texts may cover vias, which have solder mask on them, at a cost.
     vias: Vec<Area>,
 }
 

@@ -1,20 +1,20 @@
-//! Land patterns: pads, outline and room of a part, as it lies in front of a reader (x to the
-//! right, y **down**, as in KiCad's libraries).
+//! Land patterns: pads, outline and courtyard of a part, as seen in KiCad's libraries: x to the
+//! right, y **down**.
 
 use glam::{DVec2, Vec2Swizzles as _};
 
 use crate::shapes::{Area, Shape};
 
-/// A pad that solder joins to a part.
+/// A pad to which a part is soldered.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Pad {
-    /// Its number, as symbol and footprint know it.
+    /// Its number in symbol and footprint.
     pub(crate) number: &'static str,
     pub(crate) at: DVec2,
     pub(crate) size: DVec2,
-    /// Whether it is a disc of `size.x`.
+    /// Whether it is a disc of diameter `size.x`.
     pub(crate) is_round: bool,
-    /// Whether paste is printed on it.
+    /// Whether it gets solder paste.
     pub(crate) has_paste: bool,
 }
 
@@ -35,40 +35,40 @@ impl Pad {
 pub(crate) struct Land {
     /// Its name in the project's library.
     pub(crate) name: &'static str,
-    /// What it is, and where its sizes come from.
+    /// A description, with the source of its dimensions.
     pub(crate) description: &'static str,
     pub(crate) pads: Vec<Pad>,
-    /// What no other part may enter.
+    /// The courtyard: no other part may enter it.
     pub(crate) courtyard: Area,
-    /// The part's body, and how high it is.
+    /// The part's body, and its height.
     pub(crate) body: Area,
     pub(crate) height_mm: f64,
     /// Lines of the silk screen.
     pub(crate) silk: Vec<[[f64; 2]; 2]>,
-    /// Copper that joins two pads until somebody cuts it: their numbers, and the copper.
+    /// Copper that connects two pads until it is cut: the numbers of the pads, and the copper.
     pub(crate) bridge: Option<([&'static str; 2], Area)>,
-    /// Whether a machine places something here; not so for jumpers and test pads.
+    /// Whether a machine places a part here. Not so for jumpers and test pads.
     pub(crate) is_placed: bool,
 }
 
-/// Which face a part is on.
+/// The face that a part is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {
     Top,
     Bottom,
 }
 
-/// Where a part is: the sensor's frame, x to the right and y **up**, seen from above.
+/// The position of a part in the sensor's frame: x to the right and y **up**, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placement {
     pub(crate) at: DVec2,
-    /// Quarter turns, as KiCad counts them: counter-clockwise on its screen.
+    /// Number of quarter turns, counter-clockwise on KiCad's screen.
     pub(crate) quarters: u8,
     pub(crate) side: Side,
 }
 
 impl Placement {
-    /// A point of the land pattern in the footprint's own frame of a board file: parts on the
+    /// A point of the land pattern in the footprint's own frame in a board file. Parts on the
     /// bottom are turned over.
     pub(crate) fn local(&self, point: DVec2) -> DVec2 {
         match self.side {

@@ -1,5 +1,5 @@
-//! The board's outline: a rectangle under the gel and its surroundings, and at each end along x an
-//! ear with a hole for a screw.
+//! The board's outline: a rectangle under the gel and its rim, and at each end along x an ear with
+//! a hole for a screw.
 
 use glam::{DVec2, DVec3};
 use twintac_sensor::Shell;
@@ -9,16 +9,17 @@ use crate::shapes::{Area, Shape, to_segment};
 
 /// Thickness of a shell's wall, mm: three lines of a usual nozzle of 0.4 mm, and stiff enough.
 pub(crate) const SHELL_WALL_MM: f64 = 2.0;
-/// How far the board reaches beyond a gel without a shell, mm: what a mould stands on.
+/// Rim of the board around a gel without a shell, mm. A mould stands on it.
 const BARE_RIM_MM: f64 = 2.0;
-/// From the screw's axis to the board's rectangle, mm: a head of 4 mm clears the shell's wall.
+/// From the screw's axis to the board's rectangle, mm: a screw head of 4 mm clears the shell's
+/// wall.
 const SCREW_BEYOND_MM: f64 = 2.6;
 /// From the screw's axis to the end of its ear, mm.
 const EAR_BEYOND_MM: f64 = 3.4;
-/// Width of an ear, mm, and how much its corners are cut.
+/// Width of an ear and cut of its corners, mm.
 const EAR_WIDTH_MM: f64 = 9.0;
 const EAR_CUT_MM: f64 = 2.0;
-/// How much the corners of the rectangle are cut, mm.
+/// Cut of the rectangle's corners, mm.
 const CORNER_CUT_MM: f64 = 1.0;
 
 /// The board seen from above.
@@ -26,14 +27,14 @@ const CORNER_CUT_MM: f64 = 1.0;
 pub(crate) struct Outline {
     /// Corners, counter-clockwise.
     pub(crate) corners: Vec<DVec2>,
-    /// The rectangle without ears: parts lie in it.
+    /// The rectangle without ears. All parts are in it.
     pub(crate) middle: Area,
     /// Centres of the holes.
     pub(crate) holes: [DVec2; 2],
 }
 
 impl Outline {
-    /// Around a gel of these bounds and chips with these courtyards.
+    /// The outline for a gel with these bounds and chips with these courtyards.
     pub(crate) fn new(gel: (DVec3, DVec3), shell: Option<&Shell>, chips: &[Area]) -> Self {
         let rim = shell.map_or(BARE_RIM_MM, |shell| shell.gap_mm + SHELL_WALL_MM);
         let gel = Area {
@@ -58,7 +59,7 @@ impl Outline {
         }
     }
 
-    /// Distance from a point to the edge, positive on the board.
+    /// Distance from a point to the edge, mm; positive on the board.
     pub(crate) fn inside_mm(&self, point: DVec2) -> f64 {
         let edges = || self.corners.iter().zip(self.corners.iter().cycle().skip(1));
         let nearest = edges()
@@ -75,13 +76,13 @@ impl Outline {
         }
     }
 
-    /// What tracks keep free about the screws.
+    /// The areas around the screws that tracks keep free.
     pub(crate) fn screws(&self) -> [Shape; 2] {
         self.holes
             .map(|hole| Shape::disc(hole, SCREW_FREE_MM.max(0.5 * SCREW_DRILL_MM)))
     }
 
-    /// The smallest box that holds it.
+    /// The bounding box.
     pub(crate) fn bounds(&self) -> Area {
         let first = self.corners[0];
         self.corners.iter().fold(
@@ -97,7 +98,7 @@ impl Outline {
     }
 }
 
-/// To a tenth of a millimetre.
+/// Rounds to a tenth of a millimetre.
 fn round_out(point: DVec2, round: fn(f64) -> f64) -> DVec2 {
     let tenth = |value: f64| round((value * 1e7).round() / 1e6) / 10.0;
     DVec2::new(tenth(point.x), tenth(point.y))

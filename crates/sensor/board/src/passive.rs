@@ -88,8 +88,8 @@ pub(crate) fn resistor_10k() -> Device {
     }
 }
 
-/// A solder jumper: an address pin in the middle, ground at one end, the supply at the other,
-/// joined to one of them until it is cut.
+/// A solder jumper for an address pin: the pin in the middle, ground at one end, the supply at the
+/// other. Copper connects the pin to one of them until it is cut.
 pub(crate) fn address_jumper(is_high: bool) -> Device {
     let (name, symbol, joined, middle) = if is_high {
         ("Jumper_3_Bridged23", "Jumper_3_Bridged23", ["2", "3"], 0.55)
@@ -128,7 +128,7 @@ pub(crate) fn address_jumper(is_high: bool) -> Device {
     }
 }
 
-/// A bare pad of 1.2 mm to probe or to solder a wire to.
+/// A bare pad of 1.2 mm, for a probe or a wire.
 pub(crate) fn test_pad() -> Device {
     let mut pad = Pad::new("1", [0.0, 0.0], [1.2, 1.2]);
     (pad.is_round, pad.has_paste) = (true, false);

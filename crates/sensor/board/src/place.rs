@@ -1,5 +1,5 @@
-//! Where parts lie: barometers where the description has them, everything else on the bottom face,
-//! each as close as there is room to what it is joined to.
+//! Placement of parts: barometers where the description has the taxels, all other parts on the
+//! bottom face, each as close as there is room to the pads it connects to.
 
 use glam::DVec2;
 use twintac_sensor::Sensor;
@@ -12,32 +12,31 @@ use crate::outline::Outline;
 use crate::rules::{EDGE_CLEARANCE_MM, SCREW_FREE_MM};
 use crate::shapes::Area;
 
-/// Steps of places that are tried, mm.
+/// Step of the positions that are tried, mm.
 const STEP_MM: f64 = 0.25;
-/// What is left between the rooms of parts, mm, so that tracks and vias find ways.
+/// Free distance between the courtyards of parts, mm, for tracks and vias.
 const AISLE_MM: f64 = 0.4;
-/// The same about a switch, where all tracks meet, mm.
+/// Free distance around a switch, where all tracks meet, mm.
 const SWITCH_AISLE_MM: f64 = 0.7;
-/// From the middle of one small part of a row to the next, mm.
+/// Distance between the middles of small parts in a row, mm.
 const ROW_MM: f64 = 1.5;
-/// How far from where it belongs a part may lie, mm.
+/// Largest distance of a part from its wanted position, mm.
 const FAR_MM: f64 = 12.0;
 
-/// The same about a jumper, whose ends are named beside it, mm.
+/// Free distance around a jumper, whose ends have names beside them, mm.
 const JUMPER_AISLE_MM: f64 = 1.2;
-/// Room beyond the connector's pads, for their names, mm.
+/// Free distance beyond the connector's pads, for their names, mm.
 const PIN_NAMES_MM: f64 = 3.0;
-/// What a part that lies under a chip costs, mm of wish: vias of the chip then have to go around
-/// it.
+/// Cost of a part under a chip, mm of wish: vias of the chip then have to go around the part.
 const UNDER_CHIP_MM: f64 = 4.0;
 
-/// How far parts stay from the edge of the rectangle, mm: a lid around them has its walls there.
+/// Distance of parts from the edge of the rectangle, mm: the walls of a lid are there.
 const RIM_MM: f64 = 1.0;
 
-/// A wish: that a pad is near a point, and how much that matters.
+/// A wish: a pad, the point that it should be near to, and a weight.
 type Wish = (&'static str, DVec2, f64);
 
-/// Chips on the top face, where their taxels are.
+/// Places the chips on the top face, at their taxels.
 pub(crate) fn on_top(sensor: &Sensor, circuit: &Circuit) -> Result<Vec<Placement>, BoardError> {
     let mut placed: Vec<(Placement, Area)> = Vec::new();
     for (index, taxel) in sensor.taxels.iter().enumerate() {
@@ -68,7 +67,7 @@ pub(crate) fn on_top(sensor: &Sensor, circuit: &Circuit) -> Result<Vec<Placement
     Ok(placed.into_iter().map(|(place, _)| place).collect())
 }
 
-/// Places all parts. The chips' places are given.
+/// Places all parts. The placements of the chips are given.
 pub(crate) fn place(
     circuit: &Circuit,
     chips: &[Placement],
@@ -127,9 +126,9 @@ struct Placer<'a> {
     circuit: &'a Circuit,
     outline: &'a Outline,
     places: Vec<Option<Placement>>,
-    /// Rooms on the bottom face that are taken.
+    /// Occupied areas on the bottom face.
     taken: Vec<Area>,
-    /// What chips cover on the top face.
+    /// Areas that chips cover on the top face.
     over: Vec<Area>,
 }
 
@@ -155,7 +154,7 @@ impl Placer<'_> {
         self.places[part] = Some(place);
     }
 
-    /// Where the pads of a net are on a part that is placed.
+    /// Positions of the pads of a net, on a placed part.
     fn pads_of(&self, part: usize, net: &str) -> Vec<DVec2> {
         let Some(place) = self.places[part] else {
             return Vec::new();
@@ -175,7 +174,8 @@ impl Placer<'_> {
         }
     }
 
-    /// At the edge of smallest y, its mouth outwards, as near to the middle as there is room.
+    /// Places the connector at the edge of smallest y, with its opening outwards, in the middle of
+    /// that edge.
     fn connector(&mut self) -> Result<(), BoardError> {
         let part = self.circuit.connector;
         let middle = &self.outline.middle;
@@ -198,7 +198,7 @@ impl Placer<'_> {
         Ok(())
     }
 
-    /// In the middle of its taxels, turned such that its channels are near them.
+    /// Places a switch in the middle of its taxels, turned so that its channels are near them.
     fn switch(&mut self, switch: &SwitchParts) -> Result<(), BoardError> {
         let chips = switch.taxels.iter().map(|taxel| self.circuit.taxels[*taxel].chip);
         let at: Vec<DVec2> = chips
@@ -227,7 +227,7 @@ impl Placer<'_> {
         self.settle(switch.switch, &wishes, middle, SWITCH_AISLE_MM)
     }
 
-    /// As near as possible to the pads of a net of another part.
+    /// Places a part as near as possible to the pads of a net of another part.
     fn beside(&mut self, part: usize, other: usize, net: &str) -> Result<(), BoardError> {
         let ends = self.pads_of(other, net);
         let pads = &self.circuit.parts[part].device.land.pads;
@@ -245,7 +245,7 @@ impl Placer<'_> {
         self.settle(part, &wishes, middle, aisle_mm)
     }
 
-    /// Where there is room and the wishes are met best.
+    /// Takes the free position with the lowest cost.
     fn settle(
         &mut self,
         part: usize,
@@ -274,7 +274,7 @@ impl Placer<'_> {
         Ok(())
     }
 
-    /// A chip's capacitor and its pull-ups: a row of three.
+    /// Places a chip's capacitor and its two pull-ups in a row.
     fn row(&mut self, taxel: &TaxelParts) -> Result<(), BoardError> {
         let Some(chip) = self.places[taxel.chip] else {
             return Err(self.no_room(taxel.chip));
@@ -315,7 +315,7 @@ impl Placer<'_> {
         Ok(())
     }
 
-    /// Of two ways to turn a small part the one that meets its wishes better, with what it costs.
+    /// The better of two opposite orientations of a small part, with its cost.
     fn better_turn(&self, part: usize, wishes: &[RowWish], at: DVec2, quarters: u8) -> (f64, Placement) {
         let cost = |place: Placement| {
             let far = wishes.iter().map(|wish| {
@@ -335,7 +335,8 @@ impl Placer<'_> {
         (far + self.under_chips(part, &place), place)
     }
 
-    /// What it costs that a part lies under chips; a switch is too large to lie elsewhere.
+    /// Cost of a position under chips. A switch costs nothing, because it is too large to fit
+    /// elsewhere.
     fn under_chips(&self, part: usize, place: &Placement) -> f64 {
         if self.circuit.parts[part].device.prefix == "U" {
             return 0.0;
@@ -345,7 +346,8 @@ impl Placer<'_> {
         UNDER_CHIP_MM * under as f64
     }
 
-    /// Where the pads of a small part want to be: near the chip's; the capacitor's matter most.
+    /// The wishes for the pads of a small part: near the chip's pads of the same net. The
+    /// capacitor's have the largest weights.
     fn wishes_at_chip(&self, part: usize, chip: usize) -> Vec<RowWish> {
         let small = &self.circuit.parts[part];
         let pads = small.device.land.pads.iter();
@@ -366,7 +368,7 @@ impl Placer<'_> {
     }
 }
 
-/// Where a pad of a small part wants to be.
+/// The wanted position of a pad of a small part.
 struct RowWish {
     pad: DVec2,
     ends: Vec<DVec2>,
@@ -380,7 +382,7 @@ fn orders() -> impl Iterator<Item = (bool, [f64; 3])> {
         .flat_map(|along| ORDERS.map(|order| (along, order)))
 }
 
-/// The orders of three in a row.
+/// The orders of three parts in a row.
 const ORDERS: [[f64; 3]; 6] = [
     [0.0, -1.0, 1.0],
     [0.0, 1.0, -1.0],
@@ -390,14 +392,14 @@ const ORDERS: [[f64; 3]; 6] = [
     [1.0, -1.0, 0.0],
 ];
 
-/// From the nearest pad of a number to a point.
+/// Distance from the nearest pad with this number to a point.
 fn nearest(land: &crate::land::Land, place: Placement, number: &str, end: DVec2) -> f64 {
     let pads = land.pads.iter().filter(|pad| pad.number == number);
     pads.map(|pad| place.on_board(pad.at).distance(end))
         .fold(FAR_MM, f64::min)
 }
 
-/// Places that are tried, row by row.
+/// The positions that are tried, row by row.
 fn places_about(middle: DVec2) -> impl Iterator<Item = DVec2> {
     let steps = (FAR_MM / STEP_MM) as i32;
     let middle = (middle / STEP_MM).round() * STEP_MM;

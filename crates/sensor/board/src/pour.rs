@@ -1,11 +1,12 @@
-//! The ground pour: the copper polygons that fill what tracks and pads of other nets leave free.
+//! The ground pour: copper polygons that fill the area that tracks and pads of other nets leave
+//! free.
 //!
-//! On grid points the distance to all that the pour must keep away from is known exactly. A disc of
-//! that distance about a grid point is free; the pour is the union of all free discs that are not
-//! smaller than its smallest width ([`Field`]). Its border is traced between grid points, holes are
-//! joined to their border by slits, as KiCad's own polygons have it ([`crate::contour`]), and what
-//! no ground track or via touches is left out. Pads of ground are joined by their tracks alone,
-//! which holds the heat of a soldering iron.
+//! At each grid point the exact distance to everything that the pour must keep away from is known.
+//! A disc with this radius around the grid point is free. The pour is the union of all free discs
+//! that are at least as wide as the pour's smallest width ([`Field`]). Its border is traced between
+//! grid points. Holes are connected to their border by slits, as in KiCad's own polygons
+//! ([`crate::contour`]). Polygons that no ground track or via touches are left out. Pads of ground
+//! are connected by their tracks only, so that the pour does not draw heat from a soldering iron.
 
 use glam::DVec2;
 
@@ -18,25 +19,26 @@ use crate::rules::{
 };
 use crate::shapes::Shape;
 
-/// What the pour keeps beyond the clearance, mm: its border is straight between grid points where
-/// the exact one is round.
+/// Distance that the pour keeps in addition to the clearance, mm: its border is straight between
+/// grid points where the exact border is round.
 const ROUND_MM: f64 = 0.03;
-/// Discs larger than this are cut to it, mm: those beside them cover the rest.
+/// Larger discs are reduced to this radius, mm: neighbouring discs cover the rest.
 const LARGEST_MM: f64 = 0.3;
-/// Distance of the vias that join the pours of both layers, mm.
+/// Distance of the vias that connect the pours of both layers, mm.
 const STITCH_MM: f64 = 4.0;
 
-/// What a via needs about its centre beyond the clearance, mm. Pads of ground keep that distance,
-/// too, which is more than [`VIA_TO_PAD_MM`].
+/// Free distance that a via needs around its centre in addition to the clearance, mm. It also holds
+/// for pads of ground, where it exceeds [`VIA_TO_PAD_MM`].
 const NEEDS_MM: f64 = 0.5 * VIA_MM + ROUND_MM;
 const _: () = assert!(VIA_TO_PAD_MM <= CLEARANCE_MM);
 
 /// Distances at grid points, mm.
 struct Field {
     grid: Grid,
-    /// To the nearest thing that the pour must keep away from, less the clearance; cut to 1 mm.
+    /// Distance to the nearest thing that the pour must keep away from, minus the clearance; at
+    /// most 1 mm.
     free: Vec<f64>,
-    /// To the pour's border, positive in the pour.
+    /// Distance to the pour's border, positive in the pour.
     inside: Vec<f64>,
 }
 
@@ -48,7 +50,7 @@ pub(crate) struct Pour {
     pub(crate) vias: Vec<Via>,
 }
 
-/// Fills what is left; `ground` is the net's number.
+/// Fills the free area. `ground` is the number of the ground net.
 pub(crate) fn pour(outline: &Outline, pads: &[PadCopper], routed: &Routed, ground: usize) -> Pour {
     let fields = [Side::Top, Side::Bottom].map(|side| Field::new(outline, pads, routed, ground, side));
     let mut kept = [Vec::new(), Vec::new()];
@@ -60,7 +62,7 @@ pub(crate) fn pour(outline: &Outline, pads: &[PadCopper], routed: &Routed, groun
             .partition(|polygon| is_touched(polygon, routed, ground, side));
     }
     let mut vias = stitches(outline, &kept, &fields, routed, ground);
-    // What no ground reaches is joined by a via to the other layer, if there is ground opposite.
+    // An area without ground is connected by a via to the other layer, if there is ground opposite.
     for layer in [0, 1, 0, 1] {
         for island in std::mem::take(&mut islands[layer]) {
             match via_to(&island, &kept[1 - layer], &fields, routed, &vias, ground) {
@@ -76,7 +78,7 @@ pub(crate) fn pour(outline: &Outline, pads: &[PadCopper], routed: &Routed, groun
     Pour { top, bottom, vias }
 }
 
-/// A place for a via in an island with pour opposite: the one with most room.
+/// The position with most room for a via in an island with pour opposite.
 fn via_to(
     island: &Polygon,
     opposite: &[Polygon],
@@ -102,7 +104,7 @@ fn via_to(
         })
 }
 
-/// Whether a via is far enough from the other vias of ground to be drilled.
+/// Whether a via is far enough from the other ground vias for drilling.
 fn is_apart(at: DVec2, routed: &Routed, vias: &[Via], ground: usize) -> bool {
     let mut others = routed.vias.iter().filter(|via| via.net == ground).chain(vias);
     others.all(|via| via.at.distance(at) > VIA_TO_VIA_MM + VIA_DRILL_MM)
@@ -137,7 +139,7 @@ impl Field {
     }
 }
 
-/// How deep each grid point is in the union of free discs.
+/// Depth of each grid point in the union of free discs.
 fn discs(grid: &Grid, free: &[f64]) -> Vec<f64> {
     let mut inside = vec![-LARGEST_MM; free.len()];
     for (node, free) in free.iter().enumerate() {
@@ -155,7 +157,7 @@ fn discs(grid: &Grid, free: &[f64]) -> Vec<f64> {
     inside
 }
 
-/// Whether a track or via of ground is in a polygon.
+/// Whether a ground track or via is in a polygon.
 fn is_touched(polygon: &Polygon, routed: &Routed, ground: usize, side: Side) -> bool {
     let vias = routed.vias.iter().filter(|via| via.net == ground);
     let tracks = routed.tracks.iter();

@@ -1,7 +1,8 @@
-//! Fabrication rules of the board: what any maker of two-layer boards can do at its standard price.
+//! Fabrication rules of the board: every maker of two-layer boards can produce it at the standard
+//! price.
 //!
-//! The limits are looser than the usual limits of the trade (0.15 mm tracks and gaps, 0.2 mm
-//! drills).
+//! The limits are looser than the trade's usual ones (tracks and gaps of 0.15 mm, drills of 0.2
+//! mm).
 
 /// Thickness of the board, mm.
 pub const THICKNESS_MM: f64 = 1.6;
@@ -26,13 +27,13 @@ pub(crate) const VIA_TO_PAD_MM: f64 = 0.12;
 /// Smallest distance between the centres of vias, mm: half a millimetre between the edges of the
 /// drills is easy to drill.
 pub(crate) const VIA_TO_VIA_MM: f64 = 0.8;
-/// What planning adds to clearances, mm: distances are then kept between grid points as well, and
-/// when numbers are rounded.
+/// Margin added to clearances in planning, mm. It keeps distances between grid points too, and when
+/// numbers are rounded.
 pub(crate) const MARGIN_MM: f64 = 0.012;
 
-/// Drill of a hole for a screw of 2 mm (ISO 273, medium), mm; plus 0.2 mm for the maker's tolerance
-/// is left out on purpose.
+/// Drill of a hole for an M2 screw (ISO 273, medium), mm. The 0.2 mm for the maker's tolerance are
+/// left out on purpose.
 pub(crate) const SCREW_DRILL_MM: f64 = 2.2;
-/// Radius about a screw that parts, tracks and the pour keep free, mm: a pan head is 4 mm wide (ISO
+/// Radius around a screw that parts, tracks and pour keep free, mm: a pan head is 4 mm wide (ISO
 /// 7045).
 pub(crate) const SCREW_FREE_MM: f64 = 2.3;

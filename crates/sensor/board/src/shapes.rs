@@ -5,9 +5,9 @@ use glam::DVec2;
 /// A piece of copper, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
-    /// A rectangle along the axes: its centre and half of its size.
+    /// A rectangle along the axes: its centre, and half of its size.
     Rect { center: DVec2, half: DVec2 },
-    /// All points within a radius of a line; of a point, it is a disc.
+    /// All points within a radius of a line segment. A segment of length zero is a disc.
     Capsule { from: DVec2, to: DVec2, radius: f64 },
 }
 
@@ -20,7 +20,7 @@ impl Shape {
         }
     }
 
-    /// Distance from a point to the shape; negative inside.
+    /// Distance from a point to the shape, mm; negative inside.
     pub(crate) fn distance(&self, point: DVec2) -> f64 {
         match *self {
             Self::Rect { center, half } => {
@@ -31,7 +31,7 @@ impl Shape {
         }
     }
 
-    /// The smallest box that holds it, as (minimum, maximum) corners.
+    /// The bounding box, as minimum and maximum corner.
     pub(crate) fn bounds(&self) -> (DVec2, DVec2) {
         match *self {
             Self::Rect { center, half } => (center - half, center + half),
@@ -40,7 +40,7 @@ impl Shape {
     }
 }
 
-/// Distance from a point to a line between two points.
+/// Distance from a point to the segment between two points.
 pub(crate) fn to_segment(point: DVec2, from: DVec2, to: DVec2) -> f64 {
     let along = to - from;
     let length_squared = along.length_squared();
@@ -52,7 +52,7 @@ pub(crate) fn to_segment(point: DVec2, from: DVec2, to: DVec2) -> f64 {
     point.distance(from + part * along)
 }
 
-/// Distance between two lines, 0 where they cross.
+/// Distance between two segments; 0 if they cross.
 pub(crate) fn between_segments(one: (DVec2, DVec2), two: (DVec2, DVec2)) -> f64 {
     let side = |line: (DVec2, DVec2), point: DVec2| (line.1 - line.0).perp_dot(point - line.0);
     let crosses =
@@ -69,7 +69,7 @@ pub(crate) fn between_segments(one: (DVec2, DVec2), two: (DVec2, DVec2)) -> f64 
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// A box along the axes, as courtyards are: what no other part may enter.
+/// A box along the axes, such as a courtyard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Area {
     pub(crate) min: DVec2,

@@ -1,4 +1,5 @@
-//! Written boards: every net is joined, nothing of different nets is too close, whatever the pitch.
+//! Written boards: all nets are connected, and copper of different nets keeps its distance, for any
+//! pitch.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -20,7 +21,7 @@ fn board_file(board: &Board) -> String {
     text.clone()
 }
 
-/// What must hold of each board.
+/// The checks that every board has to pass.
 fn check(board: &Board) {
     let written = Written::read(&board_file(board));
     assert_eq!(written.open_and_shorted(), Vec::<String>::new());
@@ -105,7 +106,7 @@ fn a_track_that_is_missing_or_misplaced_is_found() {
     let track = text.lines().find(|line| line.contains("(segment ")).unwrap();
     let without = text.replacen(&format!("{track}\n"), "", 1);
     assert_ne!(Written::read(&without).open_and_shorted(), Vec::<String>::new());
-    // The same track on a net that it does not belong to.
+    // The same track with the number of another net.
     let stray =
         "  (segment (start 144.5 105) (end 152.5 105) (width 0.2) (layer \"F.Cu\") (net 2) (uuid \"0\"))\n";
     let crossed = text.replacen(track, &format!("{stray}{track}"), 1);
@@ -163,7 +164,7 @@ fn geometry_is_what_the_mechanics_read() {
     );
     assert_eq!(json["shell"]["wall_mm"], 2.0);
     assert_eq!(json["indenters"][0]["shape"]["kind"], "sphere");
-    // Holes are beyond the shell, and the connector's mouth is at the edge.
+    // The holes are beyond the shell, and the connector's opening is at the edge.
     assert!(json["board"]["holes"][1]["position_mm"][0].as_f64().unwrap() > 15.0 + 3.0 + 2.0);
     let connector = &geometry.board.connector;
     let mouth = connector.center_mm[1] - 0.5 * connector.size_mm[1];

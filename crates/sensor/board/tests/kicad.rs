@@ -1,5 +1,5 @@
-//! Written boards under KiCad's own rule checks. Where `kicad-cli` 9 is not installed, these tests
-//! say so and look at nothing.
+//! Written boards under KiCad's own rule checks. Without `kicad-cli` 9 these tests print that they
+//! are skipped.
 
 #![allow(clippy::print_stderr)] // says what is skipped
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
@@ -30,7 +30,7 @@ fn write(folder: &Path, files: &BTreeMap<String, String>) {
     }
 }
 
-/// Kinds of findings of electrical and design rule checks.
+/// The kinds of findings of the electrical and design rule checks.
 fn findings(files: &BTreeMap<String, String>) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), files);
@@ -104,8 +104,8 @@ fn nothing_is_found_on_a_board_and_what_is_broken_is() {
     let missing = change(&format!("{track}\n"), "");
     assert!(missing.contains(&"unconnected_items".to_owned()), "{missing:?}");
 
-    // A track that passes 0.05 mm beside the pad of another net: pads are 1.3 mm wide, 1 mm beside
-    // the chip's centre.
+    // A track at 0.05 mm from a pad of another net: pads are 1.3 mm wide and 1 mm from the chip's
+    // centre.
     let beside = "  (segment (start 142.7 106.5) (end 142.7 103.5) (width 0.2) (layer \"F.Cu\") (net 0) (uuid \
         \"00000000-0000-8000-8000-000000000000\"))\n";
     let close = change(track, &format!("{beside}{track}"));

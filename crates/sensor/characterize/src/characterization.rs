@@ -1,4 +1,4 @@
-//! Everything that is found.
+//! The whole characterization of a sensor.
 
 use serde::Serialize;
 use twintac_recording::{Frames, Provenance, Recording};
@@ -15,66 +15,69 @@ use crate::{
     hysteresis, noise, quantum, range, repeatability, rise, sensitivity, timing, zero,
 };
 
-/// A sensor's characterization. Each figure says by itself what it is of, and is missing with a reason where the presses do not give it.
+/// The characterization of a sensor. Each figure states what it was found from, or why the
+/// recordings do not give it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Characterization {
     /// The sensor's name.
     pub sensor: String,
-    /// Where the readings come from.
+    /// Provenance of the readings.
     pub provenance: Provenance,
     /// Names of the indenters.
     pub indenters: Vec<String>,
-    /// Presses in the recordings.
+    /// Number of presses in the recordings.
     pub n_presses: usize,
-    /// Those of them whose force is known and that touch.
+    /// Number of presses with a known force and a contact. The figures that need a force use only
+    /// these.
     pub n_used: usize,
-    /// Frames outside of presses.
+    /// Number of frames outside of presses.
     pub n_frames_alone: usize,
-    /// Of those, spans of five seconds that were left out of a taxel's noise, zero and temperature because its readings leap there.
+    /// Number of windows of five seconds outside of presses that were left out of a taxel's noise,
+    /// zero and temperature drift, because its readings jump there.
     pub n_leaps: usize,
-    /// What counted as above, slow, fast and long.
+    /// The options: which presses count as above a taxel, slow, fast and long.
     pub options: CharacterizeOptions,
-    /// Unloaded noise of each taxel.
+    /// Noise of each taxel while nothing touches.
     pub noise: Finding<Vec<Noise>>,
-    /// What taxels' sensitivities have in common.
+    /// Mean sensitivity of the taxels.
     pub overall: Finding<MeanSensitivity>,
-    /// Response of each taxel.
+    /// Response of each taxel to force.
     pub sensitivity: Finding<Vec<Sensitivity>>,
-    /// Forces that stand out of the noise.
+    /// The smallest force that each taxel detects, from noise and sensitivity.
     pub detection_limit: Finding<Vec<DetectionLimit>>,
-    /// Weights put on.
+    /// Steps in reading from known weights.
     pub steps: Finding<Vec<KnownStep>>,
-    /// The range that the data cover.
+    /// The range of forces and readings that the data cover.
     pub range: Finding<CoveredRange>,
     /// Hysteresis of each taxel.
     pub hysteresis: Finding<Vec<Hysteresis>>,
     /// Rise time.
     pub rise_time: Finding<RiseTime>,
-    /// Creep in each long hold.
+    /// Creep in each long hold above a taxel.
     pub creep: Finding<Vec<Creep>>,
-    /// What other taxels read.
+    /// Readings of the other taxels relative to the pressed one.
     pub cross_talk: Finding<CrossTalk>,
-    /// How well each taxel repeats itself.
+    /// Repeatability of each taxel.
     pub repeatability: Finding<Vec<Repeatability>>,
-    /// How far each taxel comes back to zero.
+    /// How closely each taxel returns to zero after a press.
     pub zero_return: Finding<Vec<ZeroReturn>>,
-    /// What each taxel reads while nothing touches it, and how that moves with time.
+    /// Mean reading of each taxel while nothing touches it, and its drift over time.
     pub zero: Finding<Vec<ZeroOverTime>>,
-    /// How each taxel's zero moves with temperature.
+    /// Drift of each taxel's zero with temperature.
     pub temperature_drift: Finding<Vec<TemperatureDrift>>,
-    /// How often frames come, and how evenly.
+    /// Frame rate and its jitter.
     pub timing: Finding<FrameTiming>,
-    /// The smallest step between readings.
+    /// Resolution of the readings.
     pub quantum: Finding<Quantum>,
-    /// Which taxels are dead, stuck or late.
+    /// Which taxels are dead, stuck, late or intermittent.
     pub conditions: Vec<Condition>,
 }
 
-/// Characterizes a sensor from recorded presses, and from frames outside of presses, in which nothing should touch it: each of `logs` is on a clock of its
-/// own. One of both may be empty.
+/// Characterizes a sensor from recorded presses, and from frames outside of presses (`logs`), in
+/// which nothing should touch it. Each log has a clock of its own. One of the two may be empty.
 ///
 /// # Errors
-/// Recordings of another sensor, or neither presses nor frames.
+/// The recordings are of another sensor, or there are neither presses nor frames.
 pub fn characterize(
     recording: &Recording,
     logs: &[Frames],
@@ -126,13 +129,14 @@ pub fn characterize(
 }
 
 impl Characterization {
-    /// How zeros move with temperature, as a file that readings are compensated with, if the logs tell.
+    /// The temperature coefficients of the zeros, as a file for compensating readings, if the logs
+    /// give them.
     #[must_use]
     pub fn compensation(&self) -> Option<Compensation> {
         drift::compensation(&self.sensor, self.provenance, &self.temperature_drift)
     }
 
-    /// The step of the smallest force that was detected.
+    /// The detected step with the smallest force.
     #[must_use]
     pub(crate) fn smallest_step(&self) -> Option<&KnownStep> {
         let detected = self.steps.found()?.iter().filter(|step| step.is_detected);

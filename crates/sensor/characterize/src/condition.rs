@@ -1,53 +1,59 @@
-//! Which taxels are dead, stuck, late or intermittent.
+//! Condition of each taxel: dead, stuck, late or intermittent.
 //!
-//! Dead: a taxel that gives nothing that can be used in most frames, or always the count zero. Stuck: one whose value never changes. Late: one whose
-//! changes from frame to frame fit the changes of the other taxels a frame before at least twice as well (by the sum of squares that a common factor
-//! leaves) as those of the same frame, in most presses that tell. A press tells where one of both fits twice as well as the other. Intermittent: one
-//! that gives nothing in some frames. What a taxel does is told from the frames in which it gave something.
+//! - Dead: in most frames its reading cannot be used, or its raw reading is always zero.
+//! - Stuck: its raw reading never changes.
+//! - Late: its changes from frame to frame fit the changes of the other taxels one frame earlier at
+//!   least twice as well as those of the same frame, in most presses that allow the comparison. A
+//!   fit is measured by the sum of squares that remains after a common factor. A press allows the
+//!   comparison if one of the two fits is at least twice as good as the other.
+//! - Intermittent: it gives no reading in some frames.
+//!
+//! Frames in which a taxel gives no reading are ignored for "stuck".
 
 use serde::Serialize;
 use twintac_recording::{Frames, Press, Recording};
 
-/// Fewest frames of a press that tell whether a taxel is late, and of all presses whether it is stuck.
+/// Smallest number of frames, in a press, for judging whether a taxel is late, and in all presses,
+/// whether it is stuck.
 const FEWEST: usize = 10;
 
-/// By how much one of two fits has to be better.
+/// Ratio by which one of the two fits has to be better.
 const BETTER: f64 = 2.0;
 
-/// What has become of a taxel.
+/// The state of a taxel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {
-    /// It reads.
+    /// It works.
     Fine,
-    /// It reads nothing, or zero for ever.
+    /// In most frames its reading cannot be used, or its raw reading is always zero.
     Dead,
-    /// It stays at one value.
+    /// Its reading never changes.
     Stuck,
-    /// It reads what it should have read a frame before.
+    /// Its readings come one frame late.
     Late,
-    /// It reads nothing in some frames.
+    /// It gives no reading in some frames.
     Intermittent,
 }
 
-/// A taxel's condition.
+/// The condition of a taxel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Condition {
     /// The taxel's name.
     pub taxel: String,
-    /// What has become of it.
+    /// Its state.
     pub fate: Fate,
-    /// Frames.
+    /// Number of frames.
     pub n_frames: usize,
-    /// Those of them whose reading can be used.
+    /// Number of frames whose reading can be used.
     pub n_valid: usize,
-    /// Those of them in which the taxel gave nothing.
+    /// Number of frames without a reading.
     pub n_missing: usize,
-    /// Presses that tell whether it is late.
+    /// Number of presses that show whether it is late.
     pub n_timed: usize,
 }
 
-/// From the presses; without any, from the logs, which do not tell whether a taxel is late.
+/// From the presses. Without presses from the logs, which do not show whether a taxel is late.
 pub(crate) fn conditions(recording: &Recording, logs: &[Frames]) -> Vec<Condition> {
     let taxels = recording.taxels.iter().enumerate();
     taxels
@@ -95,7 +101,8 @@ pub(crate) fn conditions(recording: &Recording, logs: &[Frames]) -> Vec<Conditio
         .collect()
 }
 
-/// Whether a taxel lags a frame behind the others in a press; `None` if the press does not tell.
+/// Whether a taxel is one frame later than the others in a press. `None` if the press does not show
+/// it.
 fn lags(press: &Press, taxel: usize) -> Option<bool> {
     let valid = |frame: usize, taxel: usize| press.valid[frame][taxel];
     let change_kpa =
@@ -105,7 +112,8 @@ fn lags(press: &Press, taxel: usize) -> Option<bool> {
         let both = others.filter(|&other| valid(frame, other) && valid(frame - 1, other));
         both.map(|other| change_kpa(frame, other)).sum()
     };
-    // Sums of squares and products of the taxel's changes and the others': of the same frame, and of the frame before.
+    // Sums of squares and products of this taxel's changes and the others' changes, in the same
+    // frame and one frame earlier.
     let (mut own, mut now, mut before) = (0.0, [0.0; 2], [0.0; 2]);
     let mut n = 0;
     for frame in 2..press.time_s.len() {
@@ -145,7 +153,7 @@ mod tests {
     use super::*;
     use crate::synthetic::{Shape, press, recording};
 
-    /// Three taxels that feel the same press, and what is done to the last of them.
+    /// The condition of the third of three taxels in one press, after `change` altered it.
     fn with_last(change: impl Fn(&mut Press)) -> Condition {
         let mut three = press(&Shape {
             loading_s: 0.2,
@@ -183,7 +191,7 @@ mod tests {
         assert_eq!((late.fate, late.n_timed), (Fate::Late, 1));
     }
 
-    /// Lets the last taxel give nothing in some frames.
+    /// Removes the last taxel's reading in some frames.
     fn silence(press: &mut Press, is_silent: impl Fn(usize) -> bool) {
         for frame in (0..press.time_s.len()).filter(|frame| is_silent(*frame)) {
             (press.taxels_kpa[frame][2], press.taxels_raw[frame][2]) = (f64::NAN, f64::NAN);

@@ -1,7 +1,8 @@
 //! Creep, from long holds.
 //!
-//! Creep is the change of the output under a constant load (ISA-37.1). A robot holds a depth, not a load: the force relaxes with the gel. So creep is
-//! the change of the reading over the force, and the change of each stands beside it.
+//! Creep is the change of the output under a constant load (ISA-37.1). A robot holds a depth, not a
+//! load, and the force relaxes with the gel. Creep is therefore computed as the change of the ratio
+//! of reading to force. The changes of reading and force are given as well.
 
 use serde::Serialize;
 
@@ -9,22 +10,22 @@ use crate::recorded::Recorded;
 use crate::statistics::mean;
 use crate::{CharacterizeOptions, Finding};
 
-/// What counts as the beginning of a hold, s after it began.
+/// The time window at the beginning of a hold, s after the hold began.
 pub(crate) const BEGINS_S: [f64; 2] = [0.5, 1.5];
 
-/// How long its end is, s.
+/// Length of the window at the end of a hold, s.
 const ENDS_S: f64 = 1.0;
 
-/// What a taxel does while it is held.
+/// Change of a taxel's reading during a hold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Creep {
     /// The press's name.
     pub press: String,
     /// The taxel's name.
     pub taxel: String,
-    /// From when to when after the hold began, s.
+    /// Middle of the first and of the last window, s after the hold began.
     pub between_s: [f64; 2],
-    /// Change of reading over force, %: creep.
+    /// Creep: change of the ratio of reading to force, %.
     pub percent: f64,
     /// Change of the reading, %.
     pub reading_percent: f64,
@@ -79,7 +80,8 @@ mod tests {
 
     #[test]
     fn a_slow_rise_under_a_constant_load_is_creep() {
-        // 14 kPa + 0.014 kPa/s from the hold's begin: from 1 s to 19.5 s, 0.259 kPa of 14.014.
+        // 14 kPa + 0.014 kPa/s from the start of the hold: from 1 s to 19.5 s, 0.259 kPa of 14.014
+        // kPa.
         let presses = [press(&Shape {
             hold_s: 20.0,
             reads: |force_n, phase, into_s| 7.0 * force_n + if phase == 1 { 0.014 * into_s } else { 0.0 },

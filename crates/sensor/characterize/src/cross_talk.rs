@@ -1,7 +1,8 @@
-//! Cross-talk: what other taxels read while one is pressed.
+//! Cross-talk: the readings of the other taxels while one taxel is pressed.
 //!
-//! The reading of each taxel over that of the pressed one, at the same force and the same time, in slow loadings. In a gel most of it is no fault: a
-//! load spreads. It is what a map between taxels is made of.
+//! It is the ratio of each taxel's reading to that of the pressed taxel, at the same force and the
+//! same time, in slow loadings. In a gel most of it is no fault, because a load spreads. Pressure
+//! maps between taxels rely on it.
 
 use serde::Serialize;
 
@@ -9,21 +10,22 @@ use crate::recorded::{Recorded, above};
 use crate::statistics::{between, binned, mean};
 use crate::{CharacterizeOptions, Finding};
 
-/// Steps of force that readings are averaged in.
+/// Number of steps of force in which readings are averaged.
 const BINS: usize = 25;
 
-/// What all taxels read while each is pressed.
+/// Readings of all taxels while each one is pressed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CrossTalk {
-    /// The force at which they are compared: the largest that all slow presses above taxels reach, N.
+    /// The force of the comparison, N: the largest that all slow presses above taxels reach.
     pub force_n: f64,
     /// Names of the pressed taxels: the rows.
     pub pressed: Vec<String>,
     /// Names of the taxels: the columns.
     pub taxels: Vec<String>,
-    /// Reading over that of the pressed taxel, %; rows, then columns. Mean over presses in which both read; none of a taxel that reads in none of them.
+    /// Reading divided by that of the pressed taxel, %, indexed by row, then column. Mean over the
+    /// presses in which both have a reading; `None` if there is no such press.
     pub percent: Vec<Vec<Option<f64>>>,
-    /// The largest but for the pressed taxels themselves, %.
+    /// The largest of these without the pressed taxels themselves, %.
     pub largest_percent: f64,
 }
 
@@ -54,7 +56,7 @@ pub(crate) fn cross_talk(
             .filter_map(|(percent, _)| *percent)
     });
     let Some(largest_percent) = others.reduce(f64::max) else {
-        let why = "it takes slow presses above a taxel, and another taxel that reads meanwhile";
+        let why = "slow presses above a taxel are required, and readings of another taxel at the same time";
         return Finding::NotGiven(why.to_owned());
     };
     Finding::Found(CrossTalk {
@@ -66,7 +68,8 @@ pub(crate) fn cross_talk(
     })
 }
 
-/// What each taxel reads over the pressed one, %; nothing if that one does not read.
+/// Each taxel's reading divided by that of the pressed one, %. `None` if the pressed one has no
+/// reading.
 fn row(press: &Recorded<'_>, taxel: usize, n_taxels: usize, force_n: f64) -> Option<Vec<Option<f64>>> {
     let reading_kpa = |other: usize| {
         let response = binned(&press.points(other, &press.up()), press.peak_n(), BINS);
@@ -114,6 +117,6 @@ mod tests {
             (both.found().unwrap().largest_percent - 25.0).abs() < 1e-9,
             "{both:?}"
         );
-        assert!(talk(&[silent]).why_not().unwrap().contains("reads meanwhile"));
+        assert!(talk(&[silent]).why_not().unwrap().contains("at the same time"));
     }
 }

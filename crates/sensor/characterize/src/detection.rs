@@ -1,4 +1,4 @@
-//! The smallest force that is told from nothing.
+//! The detection limit: the smallest force that can be distinguished from noise.
 
 use serde::Serialize;
 use twintac_recording::Control;
@@ -7,18 +7,19 @@ use crate::recorded::Recorded;
 use crate::statistics::mean;
 use crate::{CharacterizeOptions, Finding, Noise, Sensitivity};
 
-/// The force at which a single reading stands out of the noise.
+/// The detection limit of a taxel, from noise and sensitivity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DetectionLimit {
     /// The taxel's name.
     pub taxel: String,
-    /// Three (or as many as the options say) times the noise floor over the sensitivity, N: the detection limit of a single reading.
+    /// Detection limit of a single reading, N: three times (or as set in the options) the noise
+    /// floor, divided by the sensitivity.
     pub single_reading_n: f64,
-    /// The same of a mean over the averaging window, N.
+    /// Detection limit of a mean over the averaging window, N.
     pub averaged_n: Option<f64>,
 }
 
-/// A weight put on above a taxel.
+/// The response to a known weight put on above a taxel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KnownStep {
     /// The press's name.
@@ -27,13 +28,14 @@ pub struct KnownStep {
     pub taxel: String,
     /// The known force, N.
     pub force_n: f64,
-    /// Mean reading in the window after the weight was put on, less that in the window before, kPa.
+    /// Mean reading in the window after the weight was put on, minus that in the window before,
+    /// kPa.
     pub step_kpa: f64,
-    /// The step over the noise floor of single readings.
+    /// The step divided by the noise floor of single readings.
     pub z_single: f64,
-    /// The step over the deviation of such differences while nothing happens.
+    /// The step divided by the standard deviation of such differences without a load.
     pub z_averaged: f64,
-    /// Whether `z_averaged` reaches the options' number of deviations.
+    /// Whether `z_averaged` is at least [`sigmas`](CharacterizeOptions::sigmas).
     pub is_detected: bool,
 }
 
@@ -43,7 +45,7 @@ pub(crate) fn limits(
     options: &CharacterizeOptions,
 ) -> Finding<Vec<DetectionLimit>> {
     let (Finding::Found(noise), Finding::Found(sensitivity)) = (noise, sensitivity) else {
-        return Finding::NotGiven("it takes both a noise floor and a sensitivity".to_owned());
+        return Finding::NotGiven("a noise floor and a sensitivity are required".to_owned());
     };
     let found = sensitivity.iter().filter_map(|response| {
         let noise = noise.iter().find(|noise| noise.taxel == response.taxel)?;
@@ -67,13 +69,13 @@ pub(crate) fn steps(
     options: &CharacterizeOptions,
 ) -> Finding<Vec<KnownStep>> {
     let Finding::Found(noise) = noise else {
-        return Finding::NotGiven("it takes a noise floor".to_owned());
+        return Finding::NotGiven("a noise floor is required".to_owned());
     };
     let loads = recorded
         .iter()
         .filter(|press| press.press.control == Control::Force);
     let found = loads.filter_map(|load| step(load, taxels, noise, options));
-    let why = "no step of a known force (control `force`) stands above a taxel with rests and holds as long as the averaging window";
+    let why = "no step of a known force (control `force`) is above a taxel and has rests and holds as long as the averaging window";
     Finding::of_list(found.collect(), why)
 }
 

@@ -1,4 +1,4 @@
-//! Drift of the unloaded readings: over a press, and with temperature.
+//! Drift of the unloaded readings: after a press, and with temperature.
 
 use serde::Serialize;
 use twintac_recording::Provenance;
@@ -9,37 +9,38 @@ use crate::rest::Rest;
 use crate::statistics::{binned, line, mean};
 use crate::untouched::Untouched;
 
-/// Smallest change of temperature that tells a coefficient, K.
+/// Smallest range of temperature that gives a coefficient, K.
 const LEAST_K: f64 = 1.0;
 
-/// Steps of temperature that readings are averaged in.
+/// Number of steps of temperature in which readings are averaged.
 const STEPS: usize = 25;
 
-/// How far a taxel comes back to zero after a press.
+/// How closely a taxel returns to zero after a press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ZeroReturn {
     /// The taxel's name.
     pub taxel: String,
-    /// Root mean square of the unloaded reading after a press, less that before, kPa.
+    /// Root mean square over presses of the unloaded reading after a press, minus that before, kPa.
     pub rms_kpa: f64,
-    /// Presses that it was found from.
+    /// Number of presses it was found from.
     pub n_presses: usize,
 }
 
-/// How a taxel's zero moves with temperature.
+/// Drift of a taxel's zero with temperature.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TemperatureDrift {
     /// The taxel's name.
     pub taxel: String,
     /// Slope of the least-squares line of unloaded pressure over temperature, kPa/K.
     pub coefficient_kpa_per_k: f64,
-    /// From which temperature to which, °C.
+    /// Lowest and highest temperature, °C.
     pub between_c: [f64; 2],
-    /// Root mean square of what is left of the readings, averaged over some seconds, without the line, kPa.
+    /// Root mean square of the residuals of the line, kPa. Readings are averaged over five seconds.
     pub remaining_kpa: f64,
-    /// Readings that it was found from.
+    /// Number of readings it was found from.
     pub n_readings: usize,
-    /// Means of the readings by rising temperature: °C, and unloaded pressure less the line's at the lowest temperature, kPa.
+    /// Means of the readings in order of temperature: temperature, °C, and unloaded pressure minus
+    /// the line's value at the lowest temperature, kPa.
     pub course: Vec<[f64; 2]>,
 }
 
@@ -99,16 +100,18 @@ pub(crate) fn with_temperature(untouched: &[Untouched], taxels: &[String]) -> Fi
     }
     let why = match widest_k {
         None => {
-            "there are no temperatures of untouched taxels; logs have them, and tables of frames".to_owned()
+            "there are no temperatures of untouched taxels; logs and tables of frames have them".to_owned()
         }
         Some(widest_k) => {
-            format!("temperatures while nothing touches change by {widest_k:.2} K, and it takes {LEAST_K} K")
+            format!(
+                "temperatures while nothing touches change by {widest_k:.2} K, at least {LEAST_K} K are required"
+            )
         }
     };
     Finding::of_list(found, &why)
 }
 
-/// The coefficients as a file that readings are compensated with.
+/// The coefficients as a file for compensating readings.
 pub(crate) fn compensation(
     sensor: &str,
     provenance: Provenance,

@@ -1,4 +1,4 @@
-//! What can go wrong with a characterization.
+//! Errors of a characterization.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use twintac_plot::PlotError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CharacterizeError {
-    /// The recordings are of another sensor.
+    /// The recordings are of another sensor than described.
     #[error(
         "the recordings are of sensor `{found}` with taxels {found_taxels}; the description is of `{expected}` with {expected_taxels}"
     )]
@@ -30,7 +30,7 @@ pub enum CharacterizeError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A page could not be written.

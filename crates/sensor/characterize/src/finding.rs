@@ -1,14 +1,15 @@
-//! What was found, or why it was not.
+//! A figure, or the reason why there is none.
 
 use serde::Serialize;
 
-/// A figure, or why the recordings do not give it. Nothing is ever put in a figure's place.
+/// A figure, or the reason why the recordings do not give it. A missing figure is never replaced by
+/// an estimate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finding<T> {
-    /// The recordings give it.
+    /// The figure.
     Found(T),
-    /// They do not, and why.
+    /// The recordings do not give it; the text says why.
     NotGiven(String),
 }
 
@@ -22,7 +23,7 @@ impl<T> Finding<T> {
         }
     }
 
-    /// Why it was not found, if it was not.
+    /// The reason, if the figure was not found.
     #[must_use]
     pub(crate) fn why_not(&self) -> Option<&str> {
         match self {
@@ -33,7 +34,7 @@ impl<T> Finding<T> {
 }
 
 impl<T> Finding<Vec<T>> {
-    /// The list, unless it is empty.
+    /// The list as a finding; an empty list is a [`NotGiven`](Self::NotGiven) with this reason.
     pub(crate) fn of_list(list: Vec<T>, why: &str) -> Self {
         if list.is_empty() {
             Self::NotGiven(why.to_owned())

@@ -1,7 +1,8 @@
-//! Hysteresis: how far the way down differs from the way up.
+//! Hysteresis: the difference between unloading and loading.
 //!
-//! The largest difference between unloading and loading at the same force, in % of the response at the largest force of the press (ISA-51.1;
-//! IEC 61298-2), of slow presses without a hold.
+//! It is the largest difference between the readings during unloading and loading at the same
+//! force, in % of the response at the largest force of the press (ISA-51.1; IEC 61298-2). Slow
+//! presses without a hold are used.
 
 use serde::Serialize;
 
@@ -10,10 +11,10 @@ use crate::recorded::{Recorded, above};
 use crate::statistics::{between, binned, mean};
 use crate::{CharacterizeOptions, Finding};
 
-/// Longest hold of a press that goes down and up again, s.
+/// Longest hold of a press that still counts as one without a hold, s.
 const LONGEST_HOLD_S: f64 = 0.5;
 
-/// Steps of force that both ways are averaged in.
+/// Number of steps of force in which both curves are averaged.
 const BINS: usize = 25;
 
 /// A taxel's hysteresis.
@@ -21,15 +22,16 @@ const BINS: usize = 25;
 pub struct Hysteresis {
     /// The taxel's name.
     pub taxel: String,
-    /// Largest difference between unloading and loading at the same force, % of full scale; mean over presses. Positive where the way down reads more.
+    /// Largest difference between unloading and loading at the same force, % of full scale; mean
+    /// over presses. Positive if the reading is larger during unloading.
     pub percent: f64,
     /// Full scale: the response at the largest force, kPa; mean over presses.
     pub full_scale_kpa: f64,
-    /// Presses that it was found from.
+    /// Number of presses it was found from.
     pub n_presses: usize,
-    /// Of the first of them: force, N, and reading, kPa, on the way up.
+    /// Loading curve of the first of these presses: force, N, and reading, kPa.
     pub loading: Vec<[f64; 2]>,
-    /// The same on the way down, by rising force.
+    /// Unloading curve of the same press, in order of rising force.
     pub unloading: Vec<[f64; 2]>,
 }
 
@@ -120,7 +122,7 @@ mod tests {
         );
         let found = &finding.found().unwrap()[0];
         assert_eq!(found.n_presses, 2);
-        // Bins end half a bin below full scale.
+        // The middle of the last bin is half a bin below full scale.
         assert!(
             (found.percent / (100.0 * 0.8 / 28.0) - 1.0).abs() < 0.03,
             "{}",

@@ -1,9 +1,35 @@
-//! What a sensor does, from recorded presses, or from readings alone: noise, detection limit, sensitivity, linearity, range, hysteresis, rise time, creep, cross-talk,
-//! repeatability, zero, drift, the rate of frames, the step of readings and taxels that fail, each by the definition that stands in its file.
+//! Characterization of a sensor from recorded presses or from readings alone: noise, detection
+//! limit, sensitivity, linearity, range, hysteresis, rise time, creep, cross-talk, repeatability,
+//! zero, drift, frame rate, resolution, and taxels that fail.
 //!
-//! [`characterize`] picks for each figure the presses that are suited for it, by what they are and not by what they are called: slow ones above a
-//! taxel for sensitivity, fast ones for rise time, long ones for creep, weights for the smallest force. What the recordings do not give is
-//! a [`Finding::NotGiven`] that says why. [`write_pages`] makes the report and the data sheet.
+//! Input is a `Recording` of presses, or `Frames` outside of presses in which nothing touches the
+//! sensor, or both (types of the crate `twintac-recording`), and the sensor's description. Output
+//! is a [`Characterization`]: forces in N, pressures in kPa, times in s, temperatures in °C.
+//! [`write_pages`] writes it as a report and a data sheet.
+//!
+//! # How it works
+//!
+//! [`characterize`] selects suitable presses for each figure by their properties, not by their
+//! names: slow presses above a taxel for sensitivity, fast ones for rise time, long ones for creep,
+//! known weights for the smallest force. [`CharacterizeOptions`] sets what counts as above, slow,
+//! fast and long.
+//!
+//! Each press is cut into rest, loading, hold, unloading and rest (module `phases`). The cuts
+//! follow the depth, or for weights, the force.
+//!
+//! Each figure is a file with its definition at the top: a function of presses that returns
+//! [`Finding::Found`], or [`Finding::NotGiven`] with the reason. No figure is estimated from
+//! presses that do not show it.
+//!
+//! - Drift with temperature is computed from frames outside of presses, that is from logs and
+//!   tables of frames; presses are not used for it. The coefficients can be saved for compensating
+//!   readings ([`Characterization::compensation`]).
+//! - The frames in which nothing touches (module `rest`) are found from the force. If no force was
+//!   measured, they are found from the pose: noise, zeros, resolution, frame rate and failing
+//!   taxels therefore need no force.
+//!
+//! The crate depends on no solver, no device and no emulator: recorded readings and the sensor's
+//! description are all that it uses.
 
 mod characterization;
 mod condition;

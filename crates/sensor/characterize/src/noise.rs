@@ -1,4 +1,4 @@
-//! What taxels read while nothing touches the gel.
+//! Noise of the readings while nothing touches the gel.
 
 use serde::Serialize;
 
@@ -7,26 +7,28 @@ use crate::statistics::{deviation, mean};
 use crate::untouched::Untouched;
 use crate::{CharacterizeOptions, Finding};
 
-/// Fewest unloaded frames of a press that count.
+/// Smallest number of unloaded frames for a press to count.
 const FEWEST_FRAMES: usize = 8;
 
-/// A taxel's noise.
+/// The noise of a taxel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Noise {
     /// The taxel's name.
     pub taxel: String,
-    /// Noise floor: standard deviation of unloaded readings about the mean of their press, all presses pooled, kPa. Without presses, about the
-    /// mean of their five seconds.
+    /// Noise floor, kPa: standard deviation of unloaded readings about the mean of their press,
+    /// pooled over all presses. Without presses: about the mean of their window of five seconds.
     pub deviation_kpa: f64,
-    /// Standard deviation of the change of the mean from one averaging window to the next, unloaded, kPa: noise that averaging leaves, and drift.
+    /// Standard deviation of the change of the mean between neighbouring averaging windows without
+    /// a load, kPa. It contains the noise that averaging leaves, and drift.
     pub window_deviation_kpa: Option<f64>,
-    /// Pairs of windows that it was found from.
+    /// Number of pairs of windows it was found from.
     pub n_windows: usize,
-    /// Unloaded readings.
+    /// Number of unloaded readings.
     pub n_readings: usize,
 }
 
-/// From the frames before presses; of a log without presses, from windows in which nothing touches.
+/// From the frames before contact in presses. For logs without presses: from windows in which
+/// nothing touches.
 pub(crate) fn noise(
     rests: &[Rest<'_>],
     untouched: &[Untouched],
@@ -72,7 +74,7 @@ pub(crate) fn noise(
     )
 }
 
-/// Changes of the mean between neighbouring windows before a press. Their true mean is zero.
+/// Changes of the mean between neighbouring windows before contact. Their expected value is zero.
 fn window_changes_kpa(press: &Rest<'_>, taxel: usize, window_s: f64) -> Vec<f64> {
     let rest = press.before.clone();
     let times_s = &press.press.time_s[rest.clone()];
@@ -91,7 +93,7 @@ fn window_changes_kpa(press: &Rest<'_>, taxel: usize, window_s: f64) -> Vec<f64>
         })
         .collect();
     let means = means.unwrap_or_default();
-    // Pairs that share no window are independent, but for the drift.
+    // Pairs that share no window are independent, except for drift.
     means.chunks_exact(2).map(|pair| pair[1] - pair[0]).collect()
 }
 

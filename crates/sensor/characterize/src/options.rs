@@ -1,23 +1,27 @@
-//! What counts as above, slow, fast and long.
+//! Options: which presses count as above a taxel, slow, fast and long.
 
 use serde::Serialize;
 
-/// What counts as above, slow, fast and long. They stand in the results.
+/// Which presses count as above a taxel, slow, fast and long, and thresholds of figures. The
+/// results contain these options.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CharacterizeOptions {
-    /// Farthest that an indenter may be from a taxel, in plan, to press it, mm. Default 1.
+    /// Largest horizontal distance of an indenter from a taxel that it presses, mm. Default 1.
     pub above_mm: f64,
-    /// Shortest loading, from contact to hold, that is slow: clocks that differ by milliseconds do not matter then, s. Default 1.
+    /// Shortest loading, from contact to hold, that counts as slow, s: offsets of milliseconds
+    /// between clocks do not matter then. Default 1.
     pub slow_s: f64,
-    /// Longest rise of the force, from 10 to 90 % of its largest, that is as good as a step, s. Default 0.1.
+    /// Longest rise of the force from 10 to 90 % of its largest value that counts as fast, s.
+    /// Default 0.1.
     pub fast_s: f64,
-    /// Shortest hold for creep, s. Default 10.
+    /// Shortest hold for which creep is computed, s. Default 10.
     pub long_s: f64,
-    /// How far a response may be from its line where it is called linear, % of the response at the end of the linear range. Default 5.
+    /// Largest deviation of a response from its line in the linear range, % of the response at the
+    /// end of the range. Default 5.
     pub linear_percent: f64,
-    /// How long readings are averaged to detect a step, s. Default 0.5.
+    /// Averaging time for detecting a step, s. Default 0.5.
     pub window_s: f64,
-    /// How many standard deviations make a detection. Default 3.
+    /// Number of standard deviations for a detection. Default 3.
     pub sigmas: f64,
 }
 

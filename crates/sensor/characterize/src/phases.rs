@@ -1,4 +1,4 @@
-//! A press, cut into rest, loading, hold, unloading and rest.
+//! The phases of a press: rest, loading, hold, unloading, rest.
 
 use std::ops::Range;
 
@@ -6,35 +6,38 @@ use twintac_recording::{Control, Press};
 
 use crate::statistics::{deviation, mean};
 
-/// A twentieth of the frames, but no fewer and no more than these, come before contact and tell the force's noise.
+/// Limits of the number of frames before contact from which the noise of the force is computed. The
+/// number is a twentieth of all frames within these limits.
 const FRAMES: [usize; 2] = [4, 20];
 
-/// Standard deviations of the unloaded force that a contact exceeds.
+/// Number of standard deviations of the unloaded force above which a contact begins.
 const CONTACT_SIGMAS: f64 = 5.0;
 
-/// Part of the largest force that a contact exceeds at least.
+/// Fraction of the largest force that a contact exceeds at least.
 const CONTACT_PART: f64 = 0.005;
 
-/// How far from the deepest, or from the largest force, a hold may be, as part of the whole.
+/// Largest difference of a hold from the deepest point or the largest force, as a fraction of the
+/// whole.
 const HOLD_PART: f64 = 0.01;
 
-/// The frames of a press.
+/// The phases of a press, as ranges of frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Phases {
-    /// Nothing touches: of a robot's approach only the first half, as a light touch is felt before the force sensor tells it.
+    /// Nothing touches. Of a robot's approach only the first half, because taxels feel a light
+    /// touch before the force sensor shows it.
     pub(crate) rest: Range<usize>,
-    /// From contact to hold.
+    /// From contact to the hold.
     pub(crate) loading: Range<usize>,
-    /// At full depth, or under the whole weight.
+    /// At full depth, or under the full weight.
     pub(crate) hold: Range<usize>,
-    /// From hold to where the contact is lost.
+    /// From the hold to the loss of contact.
     pub(crate) unloading: Range<usize>,
-    /// Nothing touches any more; of a retreat only the last half.
+    /// Nothing touches any more. Of a robot's retreat only the last half.
     pub(crate) rest_after: Range<usize>,
 }
 
 impl Phases {
-    /// `None` for a press whose force is not known, or that never touches.
+    /// `None` for a press without a known force, or without contact.
     pub(crate) fn of(press: &Press) -> Option<Self> {
         let force_n = press.force_n.as_ref()?;
         let n = force_n.len();
@@ -54,7 +57,7 @@ impl Phases {
         let is_off = |frame: &usize| force_n[*frame] <= threshold_n;
         let contact = (0..peak).rev().find(is_off).map_or(0, |frame| frame + 1);
         let lost = (peak..n).find(is_off).unwrap_or(n);
-        // What leads: the depth of a robot, the force of a weight.
+        // The controlled quantity: the depth of a robot, the force of a weight.
         let lead = |frame: usize| {
             if is_weight {
                 force_n[frame]
@@ -82,7 +85,8 @@ impl Phases {
     }
 }
 
-/// How long a phase takes, s: from its first frame to the one behind its last, as far as the press goes.
+/// Duration of a phase, s: from its first frame to the frame after its last one, if the press has
+/// that frame.
 pub(crate) fn duration_s(press: &Press, phase: &Range<usize>) -> f64 {
     let behind = phase.end.min(press.time_s.len() - 1);
     if phase.is_empty() {

@@ -1,38 +1,40 @@
-//! The smallest step between readings.
+//! Resolution: the smallest step between readings.
 //!
-//! Readings of a press that stand on a lattice differ by multiples of its step. The step is the smallest difference of two neighbours in size, if
-//! nearly all other differences of neighbours are multiples of it.
+//! Quantized readings of a press differ by multiples of one step. The step is the smallest
+//! difference between neighbours in order of size, if nearly all other differences between
+//! neighbours are multiples of it.
 
 use serde::Serialize;
 use twintac_recording::{Frames, Recording};
 
 use crate::Finding;
 
-/// Differences below this are rounding, kPa.
+/// Differences below this are rounding errors, kPa.
 const ROUNDING_KPA: f64 = 1e-9;
 
-/// Largest difference that is looked at, in steps: of larger ones nobody can tell whether they are multiples.
+/// Largest difference that is used, in steps. For larger ones one cannot tell whether they are
+/// multiples.
 const MOST_STEPS: f64 = 100.0;
 
-/// How far a difference may be from a multiple, in steps.
+/// Largest deviation of a difference from a multiple, in steps.
 const OFF_STEPS: f64 = 0.05;
 
-/// Which part of the differences has to be multiples.
+/// Fraction of the differences that have to be multiples.
 const MOST: f64 = 0.99;
 
-/// Fewest differences that tell.
+/// Smallest number of differences.
 const FEWEST: usize = 20;
 
-/// The distance of values that are told apart.
+/// The resolution of the readings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantum {
     /// The smallest step between readings, kPa.
     pub step_kpa: f64,
-    /// Differences that it was found from.
+    /// Number of differences it was found from.
     pub n_differences: usize,
 }
 
-/// Of the presses; without any, of the logs.
+/// From the presses. Without presses, from the logs.
 pub(crate) fn quantum(recording: &Recording, logs: &[Frames]) -> Finding<Quantum> {
     let mut differences_kpa = Vec::new();
     let mut add = |mut readings_kpa: Vec<f64>| {
@@ -62,7 +64,7 @@ pub(crate) fn quantum(recording: &Recording, logs: &[Frames]) -> Finding<Quantum
         .filter(|steps| (*steps - steps.round()).abs() < OFF_STEPS)
         .count();
     if near.len() < FEWEST || (n_multiples as f64) < MOST * near.len() as f64 {
-        return Finding::NotGiven("readings do not stand on a lattice of equal steps".to_owned());
+        return Finding::NotGiven("readings are not multiples of one step".to_owned());
     }
     Finding::Found(Quantum {
         step_kpa,

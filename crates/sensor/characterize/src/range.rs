@@ -1,24 +1,26 @@
-//! The range that the data cover.
+//! The range of forces and readings that the data cover.
 
 use serde::Serialize;
 
 use crate::recorded::Recorded;
 use crate::{DetectionLimit, Finding};
 
-/// The largest force and reading in the data. Nothing is said of what lies beyond.
+/// The largest force and reading in the data. Nothing is known beyond.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CoveredRange {
-    /// Largest force with valid readings of all taxels that gave one, N, wherever it was.
+    /// The largest force, N, anywhere on the gel, at which all readings that exist are valid.
     pub force_n: f64,
-    /// The taxel that reads most then.
+    /// The taxel with the largest reading in that frame.
     pub taxel: String,
-    /// Its reading above its baseline then, kPa.
+    /// Its reading above its baseline in that frame, kPa.
     pub reading_kpa: f64,
-    /// The press's name.
+    /// Name of that press.
     pub press: String,
-    /// Readings under load that were not valid: at an end of the barometers' range, or missing.
+    /// Number of readings under load that were not valid: at an end of the barometers' range, or
+    /// missing.
     pub n_invalid: usize,
-    /// Largest force over the smallest detection limit of a single reading, dB (20 log10).
+    /// Ratio of the largest force to the smallest detection limit of a single reading, dB (20
+    /// log10).
     pub dynamic_range_db: Option<f64>,
 }
 
@@ -33,7 +35,8 @@ pub(crate) fn covered(
         let frames = press.phases.loading.start..press.phases.unloading.end;
         let invalid = frames.clone().flat_map(|frame| &press.press.valid[frame]);
         n_invalid += invalid.filter(|valid| !**valid).count();
-        // A taxel that gave nothing says nothing of the range; one whose reading cannot be used is at its end.
+        // A missing reading does not limit the range. A reading that cannot be used is at the end
+        // of the barometers' range.
         let is_there = |frame: usize, taxel: usize| !press.press.taxels_raw[frame][taxel].is_nan();
         let is_in_range = |frame: &usize| {
             (0..taxels.len()).all(|taxel| press.press.valid[*frame][taxel] || !is_there(*frame, taxel))
@@ -93,7 +96,7 @@ mod tests {
         {
             valid[0] = *force_n < 5.0;
         }
-        // A taxel that gives nothing at all does not end the range.
+        // A taxel without any reading does not limit the range.
         for (taxels, valid) in saturated
             .taxels_kpa
             .iter_mut()

@@ -1,4 +1,4 @@
-//! Presses, each with its phases and the taxel that it presses.
+//! Presses with a known force, their phases, and the taxel that each presses.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use twintac_sensor::Sensor;
 use crate::CharacterizeOptions;
 use crate::phases::{Phases, duration_s};
 
-/// A press whose force is known.
+/// A press with a known force.
 pub(crate) struct Recorded<'a> {
     pub(crate) press: &'a Press,
     pub(crate) phases: Phases,
@@ -36,7 +36,7 @@ impl<'a> Recorded<'a> {
             .collect()
     }
 
-    /// Loads to a depth, slowly.
+    /// Whether this is a slow press to a depth.
     pub(crate) fn is_slow(&self, options: &CharacterizeOptions) -> bool {
         self.press.control == Control::Pose && duration_s(self.press, &self.phases.loading) >= options.slow_s
     }
@@ -50,20 +50,20 @@ impl<'a> Recorded<'a> {
         self.press.force_n.as_ref().map_or(0.0, |force_n| force_n[frame])
     }
 
-    /// Largest force, N, while it is loaded and held.
+    /// Largest force during loading and hold, N.
     pub(crate) fn peak_n(&self) -> f64 {
         (self.phases.loading.start..self.phases.hold.end)
             .map(|frame| self.force_n(frame))
             .fold(0.0, f64::max)
     }
 
-    /// A taxel's valid readings in some frames, kPa.
+    /// A taxel's valid readings in a range of frames, kPa.
     pub(crate) fn readings_kpa(&self, taxel: usize, frames: &Range<usize>) -> Vec<f64> {
         let valid = frames.clone().filter(|&frame| self.press.valid[frame][taxel]);
         valid.map(|frame| self.press.taxels_kpa[frame][taxel]).collect()
     }
 
-    /// Force, N, and a taxel's reading, kPa, in those of some frames where it is valid.
+    /// Force, N, and a taxel's reading, kPa, in the frames of a range where the reading is valid.
     pub(crate) fn points(&self, taxel: usize, frames: &Range<usize>) -> Vec<[f64; 2]> {
         let valid = frames.clone().filter(|&frame| self.press.valid[frame][taxel]);
         valid
@@ -71,18 +71,18 @@ impl<'a> Recorded<'a> {
             .collect()
     }
 
-    /// Frames from contact to hold, and the first held one.
+    /// Frames from contact to the first frame of the hold.
     pub(crate) fn up(&self) -> Range<usize> {
         self.phases.loading.start..self.phases.hold.start + 1
     }
 
-    /// The last held frame, and those until contact is lost.
+    /// Frames from the last frame of the hold to the loss of contact.
     pub(crate) fn down(&self) -> Range<usize> {
         self.phases.hold.end - 1..self.phases.unloading.end
     }
 }
 
-/// Those that press a taxel.
+/// The presses above a taxel.
 pub(crate) fn above<'r, 'a>(
     recorded: &'r [Recorded<'a>],
     taxel: usize,

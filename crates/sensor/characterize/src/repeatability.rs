@@ -1,7 +1,8 @@
-//! Repeatability: how far the same press reads the same.
+//! Repeatability: the spread of readings when the same press is repeated.
 //!
-//! The largest standard deviation, over forces, of readings at the same force in repeated slow loadings of the same place to the same depth, in % of
-//! the response at the largest force that all of them reach (IEC 61298-2 takes the same spread at each test point).
+//! It is the largest standard deviation, over forces, of readings at the same force, in repeated
+//! slow loadings of the same location to the same depth, in % of the response at the largest force
+//! that all of them reach. (IEC 61298-2 takes the same spread at each test point.)
 
 use serde::Serialize;
 
@@ -9,16 +10,17 @@ use crate::recorded::{Recorded, above};
 use crate::statistics::{between, binned, deviation, mean};
 use crate::{CharacterizeOptions, Finding};
 
-/// Steps of force that readings are averaged in.
+/// Number of steps of force in which readings are averaged.
 const BINS: usize = 25;
 
-/// Fewest presses that are a repetition.
+/// Smallest number of presses that count as a repetition.
 const FEWEST: usize = 3;
 
-/// How far places and depths of the same press may differ, mm: robots repeat themselves to so much, and readings are compared at the same force.
+/// Largest distance between the deepest points of presses that count as the same, mm. Robots repeat
+/// themselves only to about this, and readings are compared at the same force.
 const SAME_MM: f64 = 0.1;
 
-/// How well a taxel repeats itself.
+/// The repeatability of a taxel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Repeatability {
     /// The taxel's name.
@@ -29,7 +31,7 @@ pub struct Repeatability {
     pub full_scale_kpa: f64,
     /// Largest force that all presses reach, N.
     pub to_n: f64,
-    /// Presses that it was found from.
+    /// Number of presses it was found from.
     pub n_presses: usize,
 }
 
@@ -48,7 +50,7 @@ pub(crate) fn repeatability(
         });
         of_group(groups.max_by_key(Vec::len)?, taxel, name)
     });
-    let why = format!("no taxel is pressed slowly {FEWEST} times or more at one place and to one depth");
+    let why = format!("no taxel is pressed slowly {FEWEST} times or more at one location and to one depth");
     Finding::of_list(found.collect(), &why)
 }
 

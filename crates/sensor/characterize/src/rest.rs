@@ -1,4 +1,4 @@
-//! Frames of a press in which nothing touches the gel.
+//! The frames of a press in which nothing touches the gel.
 
 use std::ops::Range;
 
@@ -8,20 +8,21 @@ use twintac_sensor::Sensor;
 use crate::phases::Phases;
 use crate::statistics::mean;
 
-/// How far above the gel as described an indenter surely does not touch it, mm. Contact heights differ by less.
+/// Height above the described gel at which an indenter certainly does not touch it, mm. Contact
+/// heights differ by less.
 const CLEAR_MM: f64 = 0.5;
 
-/// A press, and where it is unloaded.
+/// A press, and its unloaded frames.
 pub(crate) struct Rest<'a> {
     pub(crate) press: &'a Press,
-    /// Before the contact.
+    /// Frames before contact.
     pub(crate) before: Range<usize>,
-    /// After it.
+    /// Frames after contact.
     pub(crate) after: Range<usize>,
 }
 
 impl<'a> Rest<'a> {
-    /// By the force where it is known; by the pose where it is not.
+    /// From the force if it is known, else from the pose.
     pub(crate) fn of(press: &'a Press, sensor: &Sensor) -> Option<Self> {
         if let Some(phases) = Phases::of(press) {
             return Some(Self {
@@ -53,13 +54,13 @@ impl<'a> Rest<'a> {
         presses.filter_map(|press| Self::of(press, sensor)).collect()
     }
 
-    /// A taxel's valid readings in some frames, kPa.
+    /// A taxel's valid readings in a range of frames, kPa.
     pub(crate) fn readings_kpa(&self, taxel: usize, frames: &Range<usize>) -> Vec<f64> {
         let valid = frames.clone().filter(|&frame| self.press.valid[frame][taxel]);
         valid.map(|frame| self.press.taxels_kpa[frame][taxel]).collect()
     }
 
-    /// How far a taxel's unloaded reading is after the press from where it was before, kPa.
+    /// A taxel's mean unloaded reading after the press minus that before, kPa.
     pub(crate) fn change_kpa(&self, taxel: usize) -> Option<f64> {
         let before_kpa = mean(&self.readings_kpa(taxel, &self.before))?;
         Some(mean(&self.readings_kpa(taxel, &self.after))? - before_kpa)
@@ -85,7 +86,7 @@ mod tests {
             rest_s: 2.0,
             ..Shape::default()
         });
-        // Down from a millimetre above the gel to a millimetre inside, and back, in 8 s.
+        // From 1 mm above the gel to 1 mm inside, and back, in 8 s.
         let n = press.time_s.len();
         for (frame, pose) in press.gel_from_indenter.iter_mut().enumerate() {
             let part = (2.0 * frame as f64 / (n - 1) as f64 - 1.0).abs();

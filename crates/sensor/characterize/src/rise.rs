@@ -1,7 +1,8 @@
 //! Rise time, from fast presses.
 //!
-//! The time from 10 to 90 % of the largest reading of a loading (IEC 61298-2), beside that of the force: what rises no slower than the force is as
-//! fast as the press, and its own rise time is only known to be shorter.
+//! It is the time from 10 to 90 % of the largest reading of a loading (IEC 61298-2), given beside
+//! that of the force. A reading that rises as fast as the force is limited by the press: its own
+//! rise time is only known to be shorter.
 
 use serde::Serialize;
 use twintac_recording::Control;
@@ -11,25 +12,27 @@ use crate::recorded::Recorded;
 use crate::statistics::median;
 use crate::{CharacterizeOptions, Finding};
 
-/// How much longer than the force's the rise of a reading that is slower must be, in frames.
+/// By how many frames the rise of a reading has to exceed that of the force to count as slower.
 const SLOWER_FRAMES: f64 = 1.0;
 
-/// How fast readings follow force: medians over fast presses.
+/// How fast readings follow the force; medians over fast presses.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RiseTime {
-    /// From 10 to 90 % of the largest reading, s.
+    /// Time from 10 to 90 % of the largest reading, s.
     pub rise_s: f64,
-    /// The same of the force, s.
+    /// Time from 10 to 90 % of the largest force, s.
     pub force_rise_s: f64,
-    /// How much later than the force the reading reaches half, s; negative for earlier. What clocks differ by is in it.
+    /// Time at which the reading reaches half of its largest value, minus the same for the force,
+    /// s. It includes the offset between clocks.
     pub delay_s: f64,
-    /// Time between frames, s: no rise is told from a shorter one.
+    /// Time between frames, s: the resolution of these times.
     pub frame_s: f64,
-    /// Whether the reading rises as fast as the force, to a frame, so that the sensor's own rise time is not seen.
+    /// Whether the reading rises as fast as the force, within a frame: then the sensor's own rise
+    /// time is not visible.
     pub is_as_fast_as_force: bool,
-    /// Presses that it was found from.
+    /// Number of presses it was found from.
     pub n_presses: usize,
-    /// Of the first of them: its name.
+    /// Name of the first of these presses.
     pub example: String,
 }
 
@@ -68,7 +71,7 @@ pub(crate) fn rise_time(recorded: &[Recorded<'_>], options: &CharacterizeOptions
     )
 }
 
-/// When the reading and the force pass 10, 90 and 50 %, s.
+/// Times at which the reading and the force pass 10, 90 and 50 % of their largest value, s.
 struct Rise {
     reading: [f64; 3],
     force: [f64; 3],
@@ -101,7 +104,7 @@ impl Rise {
     }
 }
 
-/// When a course first passes 10, 90 and 50 % of its largest value.
+/// Times at which a curve first passes 10, 90 and 50 % of its largest value.
 fn passes(course: &[[f64; 2]]) -> Option<[f64; 3]> {
     let most = course
         .iter()
@@ -140,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_first_order_lag_is_told_from_the_force() {
-        // 14 (1 - exp(-t / 0.1 s)) after a ramp of 10 ms: ln 9 time constants.
+        // 14 (1 - exp(-t / 0.1 s)) kPa after a ramp of 10 ms: the rise time is ln 9 time constants.
         let presses = [press(&Shape {
             loading_s: 0.01,
             hold_s: 2.0,

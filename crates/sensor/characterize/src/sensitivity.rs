@@ -1,8 +1,10 @@
 //! Sensitivity and linearity, from slow loadings.
 //!
-//! Sensitivity is the slope of the least-squares line through the response to loading over the linear range. The linear range is
-//! the longest from zero force on in which no point is farther from the range's own line than a stated part of the response at the range's end:
-//! independent linearity (IEC 61298-2; ISA-51.1), with the least-squares line as the line.
+//! Sensitivity is the slope of the least-squares line through the response to loading over the
+//! linear range. The linear range is the longest range from zero force on in which no point
+//! deviates from the range's own line by more than a given percentage of the response at the end of
+//! the range. This is independent linearity (IEC 61298-2; ISA-51.1) with the least-squares line as
+//! the line.
 
 use serde::Serialize;
 
@@ -10,10 +12,10 @@ use crate::recorded::{Recorded, above};
 use crate::statistics::{binned, deviation, line, mean};
 use crate::{CharacterizeOptions, Finding};
 
-/// Steps of force that readings are averaged in.
+/// Number of steps of force in which readings are averaged.
 const BINS: usize = 100;
 
-/// Fewest of them that make a line.
+/// Smallest number of steps for a line.
 const FEWEST_BINS: usize = 5;
 
 /// A taxel's response to force.
@@ -23,32 +25,33 @@ pub struct Sensitivity {
     pub taxel: String,
     /// Slope of the line over the linear range, kPa/N.
     pub sensitivity_kpa_per_n: f64,
-    /// The line at no force, kPa.
+    /// Value of the line at zero force, kPa.
     pub offset_kpa: f64,
     /// End of the linear range, N.
     pub linear_to_n: f64,
-    /// Whether the response is still linear at the largest force in the data, so that the range may go on.
+    /// Whether the response is still linear at the largest force in the data, so that the linear
+    /// range may be longer.
     pub is_linear_to_end: bool,
-    /// Largest distance from the line in the linear range, % of the response at its end.
+    /// Largest deviation from the line in the linear range, % of the response at its end.
     pub linearity_percent: f64,
     /// Largest force in the data, N.
     pub data_to_n: f64,
-    /// Slow presses that it was found from.
+    /// Number of slow presses it was found from.
     pub n_presses: usize,
     /// The response: force, N, and reading, kPa, averaged in equal steps of force.
     pub response: Vec<[f64; 2]>,
 }
 
-/// What taxels have in common.
+/// The mean over the taxels.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeanSensitivity {
     /// Mean of the taxels' sensitivities, kPa/N.
     pub mean_kpa_per_n: f64,
     /// Standard deviation between taxels, kPa/N.
     pub deviation_kpa_per_n: Option<f64>,
-    /// The smallest end of a taxel's linear range, N.
+    /// The smallest end of the taxels' linear ranges, N.
     pub linear_to_n: f64,
-    /// Taxels that it is the mean of.
+    /// Number of taxels with a sensitivity.
     pub n_taxels: usize,
 }
 
@@ -62,7 +65,7 @@ pub(crate) fn sensitivity(
         .enumerate()
         .filter_map(|(taxel, name)| of_taxel(recorded, taxel, name, options));
     let why = format!(
-        "no press to a depth stands within {} mm of a taxel and takes {} s or longer to load",
+        "no press to a depth is within {} mm of a taxel and takes {} s or longer to load",
         options.above_mm, options.slow_s
     );
     Finding::of_list(found.collect(), &why)
@@ -172,8 +175,9 @@ mod tests {
 
     #[test]
     fn a_parabola_is_linear_as_far_as_its_curvature_says() {
-        // y = x - x²/10: over [0, L] the least-squares line of a x² is off by a L²/6 at the ends, and its span is L - a L², so 5 % is reached
-        // where a L / 6 = 0.05 (1 - a L), at a L = 0.3 / 1.3.
+        // y = x - x²/10. Over [0, L] the least-squares line of a x² deviates by a L²/6 at the ends,
+        // and its span is L - a L². So 5 % is reached where a L / 6 = 0.05 (1 - a L), at a L = 0.3
+        // / 1.3.
         let found = found(|force_n, _, _| force_n - force_n * force_n / 10.0);
         let expected = 10.0 * 0.3 / 1.3;
         assert!(

@@ -1,18 +1,19 @@
-//! Means, deviations, lines and tables.
+//! Means, standard deviations, lines and tables.
 
-/// Mean; `None` of nothing.
+/// The mean. `None` for an empty slice.
 pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Standard deviation of a sample, `n - 1` degrees of freedom; `None` of fewer than two.
+/// Standard deviation of a sample with `n - 1` degrees of freedom. `None` for fewer than two
+/// values.
 pub(crate) fn deviation(values: &[f64]) -> Option<f64> {
     let middle = mean(values)?;
     let squares: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
     (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
 }
 
-/// The middle value; `None` of nothing.
+/// The median. `None` for an empty slice.
 pub(crate) fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -24,7 +25,8 @@ pub(crate) fn median(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Least-squares line `y = slope · x + offset`; `None` without two different `x`.
+/// Slope and offset of the least-squares line `y = slope · x + offset`. `None` without two
+/// different `x`.
 pub(crate) fn line(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let n = points.len() as f64;
     let [mut x_mean, mut y_mean] = [0.0, 0.0];
@@ -40,7 +42,7 @@ pub(crate) fn line(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     (xx > 0.0).then(|| [xy / xx, y_mean - xy / xx * x_mean])
 }
 
-/// Means of the points in equal steps of `x` from 0 to `end`; steps without points are left out.
+/// Means of the points in equal steps of `x` from 0 to `end`. Steps without points are left out.
 pub(crate) fn binned(points: &[[f64; 2]], end: f64, bins: usize) -> Vec<[f64; 2]> {
     let mut sums = vec![(0.0, 0.0, 0_u32); bins];
     for [x, y] in points.iter().filter(|[x, _]| (0.0..=end).contains(x)) {
@@ -56,7 +58,7 @@ pub(crate) fn binned(points: &[[f64; 2]], end: f64, bins: usize) -> Vec<[f64; 2]
         .collect()
 }
 
-/// The value between neighbouring points of a table with increasing `x`; `None` outside.
+/// Linear interpolation in a table with increasing `x`. `None` outside the table.
 pub(crate) fn between(table: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = table.partition_point(|point| point[0] < x);
     let right = table.get(after)?;

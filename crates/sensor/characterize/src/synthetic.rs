@@ -1,4 +1,4 @@
-//! Presses of known answer, for tests.
+//! Synthetic presses with known answers, for tests.
 
 use glam::DVec3;
 use twintac_recording::{Control, Frames, Press, Provenance, Recording};
@@ -8,7 +8,7 @@ use crate::phases::Phases;
 use crate::recorded::Recorded;
 use crate::rest::Rest;
 
-/// A trapezoid of force on one taxel, a second after the start; a second taxel feels a part of it.
+/// A trapezoid of force on one taxel, starting after a rest. A second taxel reads a fraction of it.
 pub(crate) struct Shape {
     pub(crate) peak_n: f64,
     pub(crate) loading_s: f64,
@@ -18,7 +18,8 @@ pub(crate) struct Shape {
     /// Standard deviation of both taxels' readings, kPa.
     pub(crate) noise_kpa: f64,
     pub(crate) rest_s: f64,
-    /// What the taxel reads under a force, N, in a phase (0 loading, 1 hold, 2 unloading), so long, s, into it, kPa.
+    /// The taxel's reading, kPa, from the force, N, the phase (0 loading, 1 hold, 2 unloading), and
+    /// the time since the phase began, s.
     pub(crate) reads: fn(f64, u32, f64) -> f64,
 }
 
@@ -37,7 +38,8 @@ impl Default for Shape {
     }
 }
 
-/// Evenly spread numbers of mean 0 and deviation 1 that look like noise: fractions of a multiple of the golden ratio.
+/// Deterministic numbers of mean 0 and standard deviation 1 that look like noise: fractional parts
+/// of multiples of the golden ratio.
 pub(crate) fn noise(seed: f64, index: usize) -> f64 {
     (((index as f64 + seed) * 0.618_033_988_749_895).fract() - 0.5) * 12.0_f64.sqrt()
 }
@@ -94,7 +96,7 @@ pub(crate) fn press(shape: &Shape) -> Press {
     made
 }
 
-/// A press above taxel 0 of two, cut into phases.
+/// A press above the first of two taxels, cut into phases.
 pub(crate) fn recorded(press: &Press) -> Recorded<'_> {
     Recorded {
         press,
@@ -103,12 +105,12 @@ pub(crate) fn recorded(press: &Press) -> Recorded<'_> {
     }
 }
 
-/// As [`recorded`], of many.
+/// [`recorded`] for many presses.
 pub(crate) fn all(presses: &[Press]) -> Vec<Recorded<'_>> {
     presses.iter().map(recorded).collect()
 }
 
-/// Where presses are unloaded, by their force.
+/// The unloaded frames of presses, from their force.
 pub(crate) fn rests(presses: &[Press]) -> Vec<Rest<'_>> {
     let rest = |press| {
         let phases = Phases::of(press).unwrap();
@@ -131,7 +133,8 @@ pub(crate) fn recording(presses: Vec<Press>) -> Recording {
     }
 }
 
-/// A log of two taxels that nothing touches, at 50 Hz: what they read, kPa, and how warm both are, °C, at a time, s.
+/// A log of two taxels that nothing touches, at 50 Hz. `reads_kpa` gives both readings, kPa, and
+/// `is_c` the temperature of both, °C, at a time, s.
 pub(crate) fn untouched(
     seconds: f64,
     reads_kpa: impl Fn(f64) -> [f64; 2],

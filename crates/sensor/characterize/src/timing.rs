@@ -1,4 +1,4 @@
-//! How often frames come, and how evenly.
+//! Frame rate and its jitter.
 
 use serde::Serialize;
 use twintac_recording::{Frames, Recording};
@@ -6,26 +6,26 @@ use twintac_recording::{Frames, Recording};
 use crate::Finding;
 use crate::statistics::{deviation, mean, median};
 
-/// Times between frames beyond so many medians are frames that are missing.
+/// An interval longer than this many medians is a gap with missing frames.
 const GAP: f64 = 1.5;
 
-/// Fewest times between frames that tell.
+/// Smallest number of intervals.
 const FEWEST: usize = 20;
 
-/// When frames come, by the recordings' time stamps.
+/// Frame rate, from the recordings' time stamps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrameTiming {
-    /// Frames in a second: one over the mean time between neighbours, Hz.
+    /// Frame rate: one over the mean interval between neighbouring frames, Hz.
     pub rate_hz: f64,
-    /// Standard deviation of the time between neighbours, as part of its mean.
+    /// Standard deviation of the interval, as a fraction of its mean.
     pub jitter: f64,
-    /// Times that it was found from.
+    /// Number of intervals it was found from.
     pub n_intervals: usize,
-    /// Times longer than one and a half of the median, which are left out.
+    /// Number of intervals longer than 1.5 times the median; they are left out.
     pub n_gaps: usize,
 }
 
-/// Of the presses; without any, of the logs.
+/// From the presses. Without presses, from the logs.
 pub(crate) fn timing(recording: &Recording, logs: &[Frames]) -> Finding<FrameTiming> {
     let logs = logs.iter().filter(|_| recording.presses.is_empty());
     let courses = recording.presses.iter().map(|press| &press.time_s);
@@ -47,7 +47,7 @@ pub(crate) fn timing(recording: &Recording, logs: &[Frames]) -> Finding<FrameTim
             n_gaps: all_s.len() - neighbours_s.len(),
         }),
         _ => Finding::NotGiven(format!(
-            "there are {} times between frames in all, and it takes {FEWEST}",
+            "there are {} intervals between frames, at least {FEWEST} are required",
             all_s.len()
         )),
     }

@@ -1,47 +1,49 @@
-//! Readings while nothing touches the sensor, outside of presses: averaged over windows of time.
+//! Readings outside of presses while nothing touches the sensor, averaged over windows of time.
 //!
-//! A window in which a taxel leaps is no rest of that taxel: something touched the sensor, or its line was disturbed. It is left out.
+//! A window in which a taxel's readings jump is left out for this taxel: something touched the
+//! sensor, or its signal was disturbed.
 
 use twintac_recording::Frames;
 
 use crate::statistics::{deviation, mean, median};
 
-/// Length of a window, s: long enough for tens of frames, short against what temperature does.
+/// Length of a window, s: long enough for tens of frames, short compared with changes of
+/// temperature.
 const WINDOW_S: f64 = 5.0;
 
-/// Fewest readings of a window.
+/// Smallest number of readings in a window.
 const FEWEST: usize = 3;
 
-/// How many times the usual deviation of a window is a leap.
+/// A window jumps if its standard deviation exceeds the median one by this factor.
 const LEAP: f64 = 5.0;
 
-/// Windows of one taxel.
+/// The windows of one taxel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Untouched {
-    /// In order, log by log.
+    /// The windows in order, log by log.
     pub(crate) windows: Vec<Window>,
-    /// Those that were left out because readings leap in them.
+    /// Number of windows that were left out because readings jump in them.
     pub(crate) n_leaps: usize,
 }
 
-/// A taxel's readings of some seconds.
+/// A taxel's readings in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
-    /// Number of its log.
+    /// Index of its log.
     pub(crate) log: usize,
-    /// Its middle, s of the log's clock.
+    /// Middle of the window, s of the log's clock.
     pub(crate) time_s: f64,
     /// Mean reading, kPa.
     pub(crate) mean_kpa: f64,
     /// Standard deviation of single readings, kPa.
     pub(crate) deviation_kpa: f64,
-    /// Mean temperature, °C, if there is any.
+    /// Mean temperature, °C, if it was measured.
     pub(crate) temperature_c: Option<f64>,
     pub(crate) n_readings: usize,
 }
 
 impl Untouched {
-    /// Of each taxel of some logs.
+    /// The windows of each taxel of these logs.
     pub(crate) fn all(logs: &[Frames], n_taxels: usize) -> Vec<Self> {
         (0..n_taxels).map(|taxel| Self::of(logs, taxel)).collect()
     }
@@ -72,7 +74,8 @@ impl Untouched {
         let deviations: Vec<f64> = all.iter().map(|window| window.deviation_kpa).collect();
         let usual_kpa = median(&deviations).unwrap_or(0.0);
         let n_all = all.len();
-        // Readings that mostly stand on one step have no usual deviation.
+        // If most windows are constant, because readings are quantized, the median is zero and no
+        // window is left out.
         let limit_kpa = if usual_kpa > 0.0 {
             LEAP * usual_kpa
         } else {
@@ -87,7 +90,7 @@ impl Untouched {
     }
 }
 
-/// Where each window begins.
+/// Index of the first frame of each window.
 fn starts(time_s: &[f64]) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut begun_s = f64::NEG_INFINITY;

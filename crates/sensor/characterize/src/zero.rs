@@ -1,4 +1,4 @@
-//! A taxel's zero: what it reads while nothing touches it, and how that moves with time.
+//! A taxel's zero: its reading while nothing touches it, and its drift over time.
 
 use serde::Serialize;
 
@@ -6,25 +6,26 @@ use crate::Finding;
 use crate::statistics::{line, mean};
 use crate::untouched::{Untouched, Window};
 
-/// Shortest log that tells how a zero moves, s.
+/// Length of the shortest log that is used, s.
 const LEAST_S: f64 = 300.0;
 
-/// A taxel's zero over time.
+/// The zero of a taxel over time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ZeroOverTime {
     /// The taxel's name.
     pub taxel: String,
     /// Mean reading, kPa.
     pub mean_kpa: f64,
-    /// Slope of the least-squares line of readings over time, kPa/h. Weather and temperature are in it.
+    /// Slope of the least-squares line of readings over time, kPa/h. It includes effects of weather
+    /// and temperature.
     pub drift_kpa_per_h: f64,
-    /// From the lowest to the highest, averaged over some seconds, kPa.
+    /// Largest minus smallest reading, each averaged over five seconds, kPa.
     pub span_kpa: f64,
     /// Length of the log, h.
     pub hours: f64,
 }
 
-/// From the longest log.
+/// From each taxel's longest log.
 pub(crate) fn zeros(untouched: &[Untouched], taxels: &[String]) -> Finding<Vec<ZeroOverTime>> {
     let found = untouched.iter().zip(taxels).filter_map(|(of_taxel, name)| {
         let logs = of_taxel.windows.chunk_by(|a, b| a.log == b.log);
@@ -51,7 +52,7 @@ pub(crate) fn zeros(untouched: &[Untouched], taxels: &[String]) -> Finding<Vec<Z
     Finding::of_list(found.collect(), &why)
 }
 
-/// From the first window to the last, s.
+/// Time from the first to the last window, s.
 fn length_s(windows: &[Window]) -> f64 {
     match windows {
         [first, .., last] => last.time_s - first.time_s,

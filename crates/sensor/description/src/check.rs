@@ -1,4 +1,4 @@
-//! What has to hold of a sensor as a whole.
+//! Checks of a sensor as a whole.
 
 use std::collections::BTreeMap;
 
@@ -9,12 +9,14 @@ use twintac_shape::{ExtentError, SignedDistance, Solid, Surfaces};
 use crate::file::SensorToml;
 use crate::{Indenter, Sensor};
 
-/// Lengths that differ by less are the same, mm.
+/// Lengths that differ by less count as equal, mm.
 const TOLERANCE_MM: f64 = 1e-6;
-/// A surface in a file stands on the board if its lowest point is so near, mm.
+/// A surface from a file counts as standing on the board if the height of its lowest point is at
+/// most this, mm.
 const ON_BOARD_MM: f64 = 1e-3;
 
-/// What numbers of a description can be at most: lengths, mm; pressures, kPa; forces, N; rates, Hz; friction; counts.
+/// Largest numbers in a description: lengths, mm; pressures, kPa; forces, N; rates, Hz; friction;
+/// counts.
 mod most {
     pub(super) const LENGTH_MM: f64 = 1e3;
     pub(super) const PRESSURE_KPA: f64 = 1e6;
@@ -48,7 +50,7 @@ impl Sensor {
         checker.inferred()
     }
 
-    /// Whether a point is in the gel, next to it, or in what is embedded in it.
+    /// Whether a point is in the gel, on its border, or in an inclusion.
     fn is_within_gel(&self, point_mm: DVec3) -> bool {
         self.gel.solid.contains(point_mm, TOLERANCE_MM, &self.surfaces)
     }
@@ -89,7 +91,7 @@ impl Checker<'_> {
                 let field = format!("{list}[{index}].name");
                 self.name(&field, name)?;
                 if let Some(first) = seen.insert(name, index) {
-                    let problem = format!("is `{name}`, as that of {list}[{first}]");
+                    let problem = format!("is `{name}`, the same as that of {list}[{first}]");
                     return Err(self.error(&field, problem, "give each a name of its own"));
                 }
             }
@@ -145,8 +147,9 @@ impl Checker<'_> {
             ));
         }
         if let Some(at_mm) = surface.bodies_meet_at_mm() {
-            let problem = format!("names a surface of bodies that touch or overlap, as at {at_mm} mm");
-            return Err(self.error("gel.solid.path", problem, "unite them to one body"));
+            let problem =
+                format!("names a surface of bodies that touch or overlap, for example at {at_mm} mm");
+            return Err(self.error("gel.solid.path", problem, "unite them into one body"));
         }
         Ok(())
     }
@@ -156,12 +159,20 @@ impl Checker<'_> {
             let field = |name: &str| format!("inclusions[{index}].{name}");
             let (min, max) = (inclusion.min_mm, inclusion.max_mm);
             if min.cmpge(max).any() {
-                let problem = format!("is {max}, not beyond min_mm {min}");
-                return Err(self.error(&field("max_mm"), problem, "let all three coordinates be larger"));
+                let problem = format!("is {max}, not above min_mm {min}");
+                return Err(self.error(
+                    &field("max_mm"),
+                    problem,
+                    "give larger values for all three coordinates",
+                ));
             }
             if min.z.abs() > TOLERANCE_MM {
-                let problem = format!("stands at z = {} mm", min.z);
-                return Err(self.error(&field("min_mm"), problem, "let it stand on the board, at z = 0"));
+                let problem = format!("has its lowest point at z = {} mm", min.z);
+                return Err(self.error(
+                    &field("min_mm"),
+                    problem,
+                    "put its lowest point on the board, at z = 0",
+                ));
             }
             let corners = (0..8).map(|bits| {
                 let pick = |axis: usize| {
@@ -243,7 +254,7 @@ impl Checker<'_> {
             } else {
                 "readout.counts_per_pa"
             };
-            let problem = "stands beside chips that say themselves what they count".to_owned();
+            let problem = "is given, but the scale of the chips is known".to_owned();
             return Err(self.error(field, problem, "leave it out"));
         }
         if readout.counts_per_pa == Some(0) {
@@ -266,7 +277,7 @@ impl Checker<'_> {
                 most::PRESSURE_PA,
             )?;
             if readout.counts_per_pa.is_some() {
-                let problem = "stands beside counts_per_pa".to_owned();
+                let problem = "is given beside counts_per_pa".to_owned();
                 return Err(self.error("readout.transfer", problem, "give one of the two"));
             }
         }
@@ -311,12 +322,12 @@ fn check_name<T>(document: &Document<T>, field: &str, name: &str) -> Checked {
     if !name.is_empty() && !name.starts_with('.') && name.chars().all(is_plain) {
         return Ok(());
     }
-    let hint = "use letters, digits, `-`, `_` and `.`, so that files can bear the name";
+    let hint = "use letters, digits, `-`, `_` and `.`, so that the name can be used for files";
     Err(document.error(field, format!("is `{name}`"), hint))
 }
 
 impl Indenter {
-    /// `within` is where the indenter's fields stand in the document.
+    /// Checks the indenter. `within` is the path of the table with the indenter's fields.
     pub(crate) fn check<T>(&self, document: &Document<T>, within: &str) -> Checked {
         check_name(document, &format!("{within}name"), &self.name)?;
         self.shape.validate().map_err(|error| {
@@ -333,14 +344,15 @@ impl Indenter {
         Ok(())
     }
 
-    /// Whether the size of the whole can be in mm.
+    /// Checks that the size of the whole indenter is plausible in mm.
     pub(crate) fn check_size<T>(&self, document: &Document<T>, within: &str, surfaces: &Surfaces) -> Checked {
         let (low_mm, high_mm) = self.bounds_mm(surfaces);
         ExtentError::check(low_mm, high_mm)
             .map_err(|error| document.error(&format!("{within}shape"), error.problem(), error.remedy()))
     }
 
-    /// Whether the indenter meets a sensor's gel from some place above it: presses are placed by the indenter's origin.
+    /// Checks that the indenter can touch the sensor's gel from above. Presses are placed by the
+    /// indenter's origin, so it must not be too far beside that origin.
     pub(crate) fn check_reach<T>(&self, document: &Document<T>, within: &str, sensor: &Sensor) -> Checked {
         let (low, high) = self.bounds_mm(&sensor.surfaces);
         let aside_mm = low.max(-high).max(DVec3::ZERO).truncate().length();

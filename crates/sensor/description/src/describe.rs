@@ -1,4 +1,4 @@
-//! A sensor in words, for people.
+//! A sensor as text for people.
 
 use std::fmt::Write;
 
@@ -8,12 +8,12 @@ use twintac_text::visible;
 
 use crate::Sensor;
 
-/// Stands behind inferred values.
+/// The mark after inferred values.
 const MARK: &str = " *";
 
 impl Sensor {
-    /// Whether a field, a part of it or something that it is part of is inferred rather than stated by the
-    /// source: `taxels` covers `taxels[2].position_mm`, and `gel.solid.size_mm[2]` tells of `gel.solid`.
+    /// Whether a field, a part of it or a table around it is inferred and not stated by the source:
+    /// `taxels` covers `taxels[2].position_mm`, and `gel.solid.size_mm[2]` marks `gel.solid`.
     #[must_use]
     pub fn is_inferred(&self, field: &str) -> bool {
         self.inferred

@@ -1,21 +1,22 @@
-//! What stands in a description's TOML.
+//! The fields of a description's TOML file.
 
 use serde::Deserialize;
 use twintac_shape::Solid;
 
 use crate::{Inclusion, Indenter, LoadLimits, Readout, Shell, Taxel};
 
-/// The file as it is written, before anything is checked.
+/// The file as written, before any check.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SensorToml {
-    /// A name of its own.
+    /// A unique name.
     pub(crate) name: String,
-    /// What it is, in a line.
+    /// What the sensor is, in one line.
     pub(crate) summary: String,
-    /// Where its sizes come from.
+    /// Source of the dimensions.
     pub(crate) source: String,
-    /// Paths of fields that nobody has measured, such as `gel.material`; what depends on them says so.
+    /// Paths of fields that nobody has measured, such as `gel.material`. Output that depends on
+    /// them is marked.
     #[serde(default)]
     pub(crate) inferred: Vec<String>,
     /// The gel.
@@ -25,24 +26,24 @@ pub(crate) struct SensorToml {
     pub(crate) inclusions: Vec<Inclusion>,
     /// Rigid walls beside the gel.
     pub(crate) shell: Option<Shell>,
-    /// Where pressure is felt, in the order of every row of readings.
+    /// Taxels, in the order of the columns of readings.
     pub(crate) taxels: Vec<Taxel>,
-    /// How readings come out.
+    /// Read-out: range, resolution, rate and chips.
     pub(crate) readout: Readout,
-    /// What it can be pressed with.
+    /// Indenters that the sensor can be pressed with.
     #[serde(default)]
     pub(crate) indenters: Vec<Indenter>,
-    /// What it stands.
+    /// Largest force and depth that the sensor withstands.
     pub(crate) limits: Option<LoadLimits>,
-    /// Path of the description that says how to read recordings of it.
+    /// Path of the import description that reads recordings of this sensor.
     pub(crate) import: Option<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GelFile {
-    /// Its undeformed shape.
+    /// The undeformed shape.
     pub(crate) solid: Solid,
-    /// A table, or the path of a file that has it.
+    /// A table, or the path of a material file that has it.
     pub(crate) material: toml::Value,
 }

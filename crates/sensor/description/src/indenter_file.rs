@@ -1,4 +1,4 @@
-//! An indenter that a file of its own describes.
+//! An indenter in a file of its own.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -9,7 +9,8 @@ use twintac_shape::{Surfaces, TriangleSurface};
 use crate::load::load_surface;
 use crate::{Indenter, Sensor, SensorError};
 
-/// An indenter that no sensor's description has. Its file (TOML) is what would stand under `[[indenters]]` of one:
+/// An indenter that no sensor's description contains. Its TOML file has the fields of an entry of
+/// `[[indenters]]`:
 ///
 /// ```toml
 /// name = "ball-8"
@@ -21,25 +22,26 @@ pub struct IndenterFile {
     pub indenter: Indenter,
     /// Its triangle surface, if it has one.
     surfaces: Surfaces,
-    /// Where its fields stand.
+    /// The parsed file, for the lines of its fields in errors.
     document: Document<Indenter>,
 }
 
 impl IndenterFile {
-    /// Reads the file; the path of a surface (STL) is relative to its folder.
+    /// Reads the file. The path of a surface (STL) is relative to the file's folder.
     ///
     /// # Errors
-    /// The first field that is wrong, a surface that cannot be had, and a file that cannot be read.
+    /// The file cannot be read, a field is wrong, or a surface cannot be loaded.
     pub fn read(path: &Path) -> Result<Self, SensorError> {
         let document = twintac_config::read::<Indenter>(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::from_document(document, folder, &|surface| std::fs::read(folder.join(surface)))
     }
 
-    /// Reads its text. `file` names it in errors; `load` gives the bytes of an STL file by the path that the text has for it.
+    /// Reads the file's text. `file` names it in errors; `load` returns the bytes of an STL file,
+    /// given its path in the text.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// See [`read`](Self::read).
     pub fn parse(
         file: &str,
         text: &str,
@@ -76,10 +78,10 @@ impl IndenterFile {
         })
     }
 
-    /// The sensor with this indenter, which takes the place of one of its name.
+    /// The sensor with this indenter added. An indenter of the same name is replaced.
     ///
     /// # Errors
-    /// An indenter so far from its origin that it comes down beside the sensor's gel.
+    /// The indenter is so far from its origin that it comes down beside the sensor's gel.
     pub fn added_to(&self, sensor: &Sensor) -> Result<Sensor, SensorError> {
         let mut sensor = sensor.clone();
         sensor

@@ -1,4 +1,4 @@
-//! From a text to a checked sensor.
+//! Reads and checks a description.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,11 +13,11 @@ use crate::sensor::surface_files;
 use crate::{Gel, GelMaterial, Sensor, SensorError};
 
 impl Sensor {
-    /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file, or of a material's, by the path that
-    /// the description has for it.
+    /// Reads a description from its text. `file` names it in errors; `load` returns the bytes of an
+    /// STL file or a material file, given its path in the description.
     ///
     /// # Errors
-    /// The first field that is wrong, or a surface that cannot be had.
+    /// A field is wrong, or a file cannot be loaded.
     pub fn parse(
         file: &str,
         text: &str,
@@ -27,20 +27,21 @@ impl Sensor {
         Self::from_document(document, load)
     }
 
-    /// Reads a description from a file; paths of other files are relative to its folder.
+    /// Reads a description from a file. Paths of other files are relative to its folder.
     ///
     /// # Errors
-    /// Those of [`Sensor::parse`], and a file that cannot be read.
+    /// The file cannot be read; those of [`Sensor::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SensorError> {
         let folder = path.as_ref().parent().unwrap_or(Path::new("")).to_owned();
         let document = twintac_config::read::<SensorToml>(path)?;
         Self::from_document(document, &|name| std::fs::read(folder.join(name)))
     }
 
-    /// The text of a description with its material in it, where it names a file that has it: a text that says all by itself.
+    /// The text of a description with the material table in place of the path of a material file,
+    /// so that the text is complete by itself.
     ///
     /// # Errors
-    /// Those of [`Sensor::parse`] that have to do with the material.
+    /// Those of [`Sensor::parse`] that concern the material.
     pub fn text_with_material(
         file: &str,
         text: &str,
@@ -96,7 +97,7 @@ impl Sensor {
 
 const MATERIAL: &str = "gel.material";
 
-/// The table of the gel's material, and what it means.
+/// The table of the gel's material, and the material.
 fn load_material(
     document: &Document<SensorToml>,
     load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
@@ -132,7 +133,7 @@ fn load_surfaces(
     Ok(surfaces)
 }
 
-/// The surface of an STL file, of which a field names the path.
+/// Loads the surface of an STL file whose path is in a field.
 pub(crate) fn load_surface<T>(
     document: &Document<T>,
     field: &str,

@@ -1,18 +1,18 @@
-//! What a gel is made of.
+//! The material of a gel.
 
 use serde::Serialize;
 use twintac_material::{Model, PronyTerm};
 
-/// A nearly incompressible rubber, at once elastic and slowly relaxing.
+/// A nearly incompressible rubber: elastic, with viscoelastic relaxation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GelMaterial {
-    /// Answer to a change of shape; its constants are instantaneous, before anything relaxes.
+    /// The hyperelastic model. Its constants are instantaneous, before relaxation.
     pub model: Model,
-    /// Resistance to a change of volume, kPa.
+    /// Bulk modulus, kPa.
     pub bulk_modulus_kpa: f64,
-    /// What relaxes; empty for a gel without memory.
+    /// Terms of the Prony series of the relaxation; empty for a purely elastic gel.
     pub prony: Vec<PronyTerm>,
-    /// Where the constants come from.
+    /// Source of the constants.
     pub source: String,
 }
 

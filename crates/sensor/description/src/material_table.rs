@@ -1,4 +1,4 @@
-//! What stands in the table of a material, in a sensor's description or in a file of its own.
+//! The table of a material, in a sensor's description or in a file of its own.
 
 use serde::Deserialize;
 use toml::{Table, Value};
@@ -7,22 +7,23 @@ use twintac_material::{Model, NeoHookean};
 
 use crate::GelMaterial;
 
-/// A table that is read piece by piece; what is left at last are the constants of the model.
+/// A table that is read field by field. The fields that remain at the end are the model's
+/// constants.
 struct Reader<'a, T> {
     rest: Table,
     document: &'a Document<T>,
-    /// The table's own path; empty if it is the whole file.
+    /// Path of the table in the document; empty if it is the whole file.
     at: &'a str,
 }
 
-/// Volume's part of the stiffness, as it is given.
+/// The compressibility, in the form in which the table gives it.
 #[derive(Clone, Copy)]
 enum Compressibility {
     PoissonsRatio(f64),
     BulkModulusKpa(f64),
 }
 
-/// The material that a table means.
+/// The material of a table.
 pub(crate) fn material<T>(
     table: &Table,
     document: &Document<T>,
@@ -117,22 +118,22 @@ impl<T> Reader<'_, T> {
             }
             (None, Some(bulk)) => Ok(Compressibility::BulkModulusKpa(bulk)),
             (Some(_), Some(_)) => {
-                let problem = "stands beside `poissons_ratio`";
+                let problem = "is given beside `poissons_ratio`";
                 Err(self.error("bulk_modulus_kpa", problem, "keep one of the two"))
             }
             (None, None) => {
                 let hint = "give `poissons_ratio` or `bulk_modulus_kpa`";
-                Err(self.error("", "says nothing about volume", hint))
+                Err(self.error("", "has no constant for the change of volume", hint))
             }
         }
     }
 
-    /// The model, whose shear modulus may be given by Young's.
+    /// The model. Its shear modulus may be given as Young's modulus.
     fn model(&mut self, volume: Compressibility) -> Result<Model, ConfigError> {
         let youngs_kpa = self.positive("youngs_modulus_kpa")?;
         if let Some(youngs_kpa) = youngs_kpa {
             if self.rest.contains_key("shear_modulus_kpa") {
-                let problem = "stands beside `youngs_modulus_kpa`";
+                let problem = "is given beside `youngs_modulus_kpa`";
                 return Err(self.error("shear_modulus_kpa", problem, "keep one of the two"));
             }
             let shear_kpa = shear_from_youngs(youngs_kpa, volume);
@@ -159,7 +160,7 @@ impl<T> Reader<'_, T> {
         Ok(model)
     }
 
-    /// What serde did not like about the constants; its messages name the field.
+    /// An error of serde about the constants. Its messages name the field.
     fn misfit(&self, message: &str, youngs_kpa: Option<f64>) -> ConfigError {
         let named = |start: &str| {
             message

@@ -1,4 +1,4 @@
-//! What a sensor consists of.
+//! The parts of a sensor.
 
 use std::f64::consts::TAU;
 
@@ -8,20 +8,22 @@ use twintac_shape::{Shape, Solid, SurfaceFile, Surfaces};
 
 use crate::GelMaterial;
 
-/// Points of a port's rim.
+/// Number of points on a port's rim.
 const RIM_POINTS: u32 = 16;
 
-/// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole. It is written with all that it consists of, surfaces with their corners: what is
-/// made from a sensor is told by that from what is made from another.
+/// A checked sensor: [`Sensor::parse`] returns only sensors that are consistent as a whole. Its
+/// serialized form contains everything, also the corners of its surfaces, so that results made from
+/// different sensors can be told apart.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sensor {
-    /// A short name, fit for file names.
+    /// A short name, valid in file names.
     pub name: String,
     /// What this sensor is, in a sentence or two.
     pub summary: String,
-    /// Where the description's values come from.
+    /// Source of the values in the description.
     pub source: String,
-    /// Paths of the fields that are inferred rather than stated by the source, such as `gel.solid.size_mm`.
+    /// Paths of the fields that are inferred and not stated by the source, such as
+    /// `gel.solid.size_mm`.
     pub inferred: Vec<String>,
     /// The gel.
     pub gel: Gel,
@@ -29,34 +31,36 @@ pub struct Sensor {
     pub inclusions: Vec<Inclusion>,
     /// The rigid shell around the gel, if there is one.
     pub shell: Option<Shell>,
-    /// Where pressure is felt, in the order of all readings.
+    /// Taxels, in the order of all readings.
     pub taxels: Vec<Taxel>,
-    /// How readings come out.
+    /// Read-out: range, resolution, rate and chips.
     pub readout: Readout,
-    /// What the sensor is pressed with.
+    /// Indenters that the sensor is pressed with.
     pub indenters: Vec<Indenter>,
-    /// What it stands, if that is known. A bench that presses it has to know.
+    /// Largest force and depth that the sensor withstands, if known. A real or emulated test setup
+    /// that presses it needs them.
     pub limits: Option<LoadLimits>,
-    /// Path, relative to the description, of the import description that reads recordings of this sensor.
+    /// Path of the import description that reads recordings of this sensor, relative to the
+    /// description.
     pub import: Option<String>,
-    /// The triangle surfaces that the gel and the indenters name.
+    /// The triangle surfaces of the gel and the indenters, by name.
     #[serde(serialize_with = "written")]
     pub surfaces: Surfaces,
 }
 
 impl Sensor {
-    /// The indenter of a name, if the sensor has one.
+    /// The indenter with this name, if the sensor has one.
     #[must_use]
     pub fn indenter(&self, name: &str) -> Option<&Indenter> {
         self.indenters.iter().find(|indenter| indenter.name == name)
     }
 
-    /// The surfaces (STL) that the gel and the indenters name, each with the field of its path.
+    /// The surface files (STL) of the gel and the indenters, each with the field that has its path.
     pub(crate) fn surface_files(&self) -> Vec<(String, &SurfaceFile)> {
         surface_files(&self.gel.solid, &self.indenters)
     }
 
-    /// Whether a port reaches out of the gel, over its side: it feels what gel there is below it.
+    /// Whether a port extends over the gel's side. Such a port reads only the gel within it.
     #[must_use]
     pub fn has_port_at_side(&self) -> bool {
         self.taxels.iter().any(|taxel| {
@@ -70,12 +74,13 @@ impl Sensor {
     }
 }
 
-/// Surfaces as the corners of their triangles.
+/// Serializes surfaces as the corners of their triangles.
 fn written<S: Serializer>(surfaces: &Surfaces, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(surfaces.iter().map(|(name, surface)| (name, &**surface)))
 }
 
-/// The surfaces (STL) that a gel and indenters name, each with the field of its path in a description.
+/// The surface files (STL) of a gel and of indenters, each with the field of a description that has
+/// its path.
 pub(crate) fn surface_files<'a>(
     solid: &'a Solid,
     indenters: &'a [Indenter],
@@ -91,12 +96,12 @@ pub(crate) fn surface_files<'a>(
     of_gel.into_iter().chain(of_indenters).collect()
 }
 
-/// The soft part. It is bonded to the board at z = 0 and to the inclusions.
+/// The gel. It is bonded to the board at z = 0 and to the inclusions.
 #[derive(Clone, Debug, Serialize)]
 pub struct Gel {
-    /// Its undeformed shape.
+    /// The undeformed shape.
     pub solid: Solid,
-    /// What it is made of.
+    /// The material.
     pub material: GelMaterial,
 }
 
@@ -104,7 +109,7 @@ pub struct Gel {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Inclusion {
-    /// A name of its own.
+    /// A unique name.
     pub name: String,
     /// Corner with the smallest coordinates, mm; z is 0.
     pub min_mm: DVec3,
@@ -112,82 +117,86 @@ pub struct Inclusion {
     pub max_mm: DVec3,
 }
 
-/// Rigid walls beside the gel. The gel can bulge into the gap between.
+/// Rigid walls beside the gel. The gel can bulge into the gap between them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shell {
-    /// Distance from the gel's footprint to the walls on all four sides, mm.
+    /// Distance from the gel's outline to the walls on all four sides, mm.
     pub gap_mm: f64,
     /// Height of the walls above the board, mm.
     pub height_mm: f64,
 }
 
-/// A place where pressure is felt.
+/// A taxel: a pressure port with its chip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Taxel {
-    /// A name of its own, fit for column names.
+    /// A unique name, valid as a column name.
     pub name: String,
-    /// Centre of the port, mm: in the gel, on the board or on a face of an inclusion.
+    /// Centre of the port, mm; in the gel, on the board or on a face of an inclusion.
     pub position_mm: DVec3,
-    /// Radius of the port, a disc with normal z over which pressure is averaged, mm.
+    /// Radius of the port, mm. The pressure is averaged over this disc, whose normal is z.
     pub port_radius_mm: f64,
-    /// Which channel of its switch it is read through, 0 to 7. Left out: its chip is on the bus itself, behind no switch.
+    /// The channel of the switch that the chip is read through, 0 to 7. If left out, the chip is on
+    /// the bus itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channel: Option<u8>,
-    /// The 7-bit address of that switch. Left out: 0x70.
+    /// The 7-bit address of that switch. Default 0x70.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub switch: Option<u8>,
-    /// The manufacturer's name for its chip, such as `BMP390`. Left out: [`Readout::chip`].
+    /// The manufacturer's name of the chip, such as `BMP390`. Default [`Readout::chip`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chip: Option<String>,
-    /// Its chip's 7-bit address. Left out: the first that such chips have.
+    /// The chip's 7-bit address. Default: the chip's first address.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<u8>,
-    /// How many samples of its chip make one pressure. Left out: [`Readout::samples`].
+    /// Number of samples averaged for one pressure. Default [`Readout::samples`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<u16>,
-    /// Why its readings are not to be trusted, if they are not: it is then left out of headline figures and
-    /// reported beside them.
+    /// Why the taxel is excluded, if its readings cannot be trusted: it is left out of headline
+    /// figures and reported beside them.
     #[serde(default)]
     pub doubtful: Option<String>,
 }
 
-/// How readings come out.
+/// Read-out of the sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Readout {
-    /// Smallest absolute pressure that can be read, kPa.
+    /// Smallest absolute pressure in the range, kPa.
     pub min_kpa: f64,
-    /// Largest absolute pressure that can be read, kPa.
+    /// Largest absolute pressure in the range, kPa.
     pub max_kpa: f64,
     /// Smallest step between readings, kPa.
     pub resolution_kpa: f64,
-    /// Readings of all taxels in a second, Hz.
+    /// Frame rate, Hz: a frame has the readings of all taxels.
     pub rate_hz: f64,
-    /// The manufacturer's name for the chips of taxels that name none themselves, such as `MS5837-30BA`. Left out: `CPS135B`.
+    /// The manufacturer's name of the chips of all taxels without a `chip` of their own, such as
+    /// `MS5837-30BA`. Default `CPS135B`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chip: Option<String>,
-    /// How many samples of a chip make one pressure, for taxels that say nothing else. Left out: what is usual of the chip.
+    /// Number of samples averaged for one pressure, for taxels without `samples` of their own.
+    /// Default: the chip's usual number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<u16>,
-    /// Unit that the device itself reports, such as `kPa` or `psi`; for people to read.
+    /// The unit that the device itself reports, such as `kPa` or `psi`; only a text for people.
     #[serde(default = "kilopascal")]
     pub unit: String,
-    /// How many counts of its barometers are a pascal, once somebody who knows the parts has confirmed it: parts that look alike on the
-    /// bus differ.
+    /// Counts of the barometers per pascal, confirmed by somebody who knows the parts: parts that
+    /// look alike on the bus can differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub counts_per_pa: Option<u16>,
-    /// What counts stand for, confirmed, where that is not a whole number of counts per pascal from a vacuum on.
+    /// The confirmed scale of counts, if it is not a whole number of counts per pascal with zero at
+    /// vacuum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub transfer: Option<ConfirmedTransfer>,
 }
 
-/// What the counts of a barometer stand for: `pressure_pa = pa_per_count · counts + offset_pa`.
+/// The scale of a barometer's counts: `pressure_pa = pa_per_count · counts + offset_pa`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConfirmedTransfer {
-    /// Pascal per count.
+    /// Pascals per count.
     pub pa_per_count: f64,
     /// Pressure at 0 counts, Pa.
     #[serde(default)]
@@ -196,7 +205,8 @@ pub struct ConfirmedTransfer {
     pub signed: bool,
 }
 
-/// What a sensor stands. Whoever presses it may set lower limits, never higher ones.
+/// Largest force and depth that a sensor withstands. Limits set for a press may be lower, but never
+/// higher.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LoadLimits {
@@ -210,15 +220,15 @@ fn kilopascal() -> String {
     "kPa".to_owned()
 }
 
-/// A rigid body that the sensor is pressed with.
+/// A rigid body that presses the sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Indenter {
-    /// A name of its own, by which protocols and recordings call it.
+    /// A unique name. Protocols and recordings use it.
     pub name: String,
-    /// Its shape.
+    /// The shape.
     pub shape: Shape,
-    /// Coulomb's coefficient of friction on the gel; that of the solver's settings where it is left out.
+    /// Coulomb's coefficient of friction on the gel. Default: the one in the solver's settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
 }

@@ -10,34 +10,34 @@ use toml::{Table, Value};
 
 use crate::{Sensor, SensorError};
 
-/// PhysTac's description, and its name for errors.
+/// PhysTac's description, and the file name for errors.
 const PHYSTAC: (&str, &str) = ("sensors/phystac.toml", include_str!("../built_in/phystac.toml"));
 const PHYSTAC_TIP: (&str, &str) = (
     "sensors/phystac-tip.toml",
     include_str!("../built_in/phystac-tip.toml"),
 );
 
-/// A sensor description with its text, which logs, runs and models keep.
+/// A sensor description with its text. Logs, runs and models keep it in this form.
 #[derive(Clone, Debug)]
 pub struct SensorFile {
-    /// What the description says.
+    /// The sensor.
     pub sensor: Arc<Sensor>,
-    /// The description (TOML), with the material in it that it may name in a file of its own.
+    /// The description (TOML). A material file that it names is replaced by its table.
     pub text: String,
-    /// Where surfaces and the import description lie.
+    /// The folder to which paths of surfaces and of the import description are relative.
     folder: PathBuf,
-    /// The files of surfaces (STL) as they were read, by the names that the description has for them.
+    /// Contents of the surface files (STL), by their names in the description.
     surfaces: BTreeMap<String, Arc<[u8]>>,
 }
 
-/// Where the surfaces of a description lie that is kept with them.
+/// Folder of the surfaces that are kept with a description.
 const SURFACES: &str = "surfaces";
 
 impl SensorFile {
-    /// Reads a description; paths of other files are relative to its folder.
+    /// Reads a description. Paths of other files are relative to its folder.
     ///
     /// # Errors
-    /// Those of [`Sensor::parse`], and a file that cannot be read.
+    /// The file cannot be read; those of [`Sensor::parse`].
     pub fn read(path: &Path) -> Result<Self, SensorError> {
         let text = std::fs::read_to_string(path).map_err(|found| SensorError {
             file: path.display().to_string(),
@@ -49,7 +49,7 @@ impl SensorFile {
         Self::parse(path, &text)
     }
 
-    /// Reads a description from its text, as if it stood in the file `path`, which need not exist.
+    /// Reads a description from its text, as if it were in the file `path`, which need not exist.
     ///
     /// # Errors
     /// Those of [`Sensor::parse`].
@@ -58,7 +58,8 @@ impl SensorFile {
         Self::parse_with(path, text, &|name| std::fs::read(folder.join(name)))
     }
 
-    /// The same with files of materials and surfaces that `load` gives by the names that the description has for them.
+    /// Like [`parse`](Self::parse). `load` returns the contents of material and surface files,
+    /// given their names in the description.
     ///
     /// # Errors
     /// Those of [`Sensor::parse`].
@@ -89,7 +90,7 @@ impl SensorFile {
         })
     }
 
-    /// The description of PhysTac, which is built in.
+    /// The built-in description of PhysTac.
     ///
     /// # Errors
     /// None, unless this crate was compiled with another file in its place.
@@ -98,7 +99,7 @@ impl SensorFile {
         Self::parse(Path::new(name), text)
     }
 
-    /// The description of PhysTac's domed fingertip, which is built in.
+    /// The built-in description of PhysTac's domed fingertip.
     ///
     /// # Errors
     /// None, unless this crate was compiled with another file in its place.
@@ -107,10 +108,11 @@ impl SensorFile {
         Self::parse(Path::new(name), text)
     }
 
-    /// The same sensor with a gel of another material: the text of a material file (TOML). Its constants are not inferred any more; comments are lost.
+    /// The same sensor with another gel material. `material` is the text of a material file (TOML).
+    /// The material's constants no longer count as inferred. Comments are lost.
     ///
     /// # Errors
-    /// A material that cannot be read or is wrong.
+    /// The material cannot be read or is wrong.
     pub fn with_material(&self, material: &str) -> Result<Self, SensorError> {
         let material: Table =
             toml::from_str(material).map_err(|found| self.unreadable("gel.material", &found))?;
@@ -129,7 +131,7 @@ impl SensorFile {
     /// The same description with one coefficient of friction between the gel and every indenter.
     ///
     /// # Errors
-    /// A coefficient that a description may not have.
+    /// The coefficient is outside the allowed range.
     pub fn with_friction(&self, friction: f64) -> Result<Self, SensorError> {
         self.edited(|description| {
             if let Some(Value::Array(indenters)) = description.get_mut("indenters") {
@@ -140,7 +142,7 @@ impl SensorFile {
         })
     }
 
-    /// The description as its text says it, with a change.
+    /// The description with a change to its text.
     fn edited(&self, edit: impl FnOnce(&mut Table)) -> Result<Self, SensorError> {
         let mut description: Table =
             toml::from_str(&self.text).map_err(|found| self.unreadable("", &found))?;
@@ -149,7 +151,7 @@ impl SensorFile {
         Self::parse(&self.path(), &text)
     }
 
-    /// Where the description lies, or would lie if it is of no file.
+    /// The path of the description's file, or the path that it would have if it came from a text.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         self.folder.join(&self.sensor.name).with_extension("toml")
@@ -165,11 +167,13 @@ impl SensorFile {
         }
     }
 
-    /// The same description as it is kept in the file `path` with its surfaces: their names are made of their contents, in a folder beside the file. So the text tells it from
-    /// every other description, whatever lies elsewhere. [`surfaces`](Self::surfaces) has the files to write.
+    /// The same description as it is saved in the file `path` together with its surfaces. The
+    /// surfaces lie in a folder beside the file, and their names are made from their contents. The
+    /// text therefore differs from that of every other description, whatever the contents of other
+    /// files. [`surfaces`](Self::surfaces) has the files to write.
     ///
     /// # Errors
-    /// None that is known of: the description was read before.
+    /// None is known: the description was read before.
     pub fn kept_as(&self, path: &Path) -> Result<Self, SensorError> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         if self.surfaces.is_empty() {
@@ -209,27 +213,28 @@ impl SensorFile {
         })
     }
 
-    /// The files of surfaces (STL) that the description names, relative to its own, and their contents.
+    /// Contents of the surface files (STL) that the description names, by their paths relative to
+    /// it.
     #[must_use]
     pub fn surfaces(&self) -> &BTreeMap<String, Arc<[u8]>> {
         &self.surfaces
     }
 
-    /// The file that says how to read recordings of the sensor, if the description names one.
+    /// Path of the import description for recordings of the sensor, if the description names one.
     #[must_use]
     pub fn import(&self) -> Option<PathBuf> {
         self.sensor.import.as_ref().map(|path| self.folder.join(path))
     }
 }
 
-/// A name that tells a surface from every other.
+/// A unique name for a surface.
 fn kept_name(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     let digits: String = digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
     format!("{SURFACES}/{digits}.stl")
 }
 
-/// Gives surfaces other names, wherever a shape names one.
+/// Renames surfaces wherever a shape names one.
 fn rename(value: &mut Value, names: &BTreeMap<&str, String>) {
     match value {
         Value::Table(table) => {
@@ -249,7 +254,8 @@ fn rename(value: &mut Value, names: &BTreeMap<&str, String>) {
 mod tests {
     use super::*;
 
-    /// The built-in file is a symbolic link to the one that people edit. Where links are not kept, the two must be equal.
+    /// The built-in file is a symbolic link to the file in `sensors`. Where links are not kept,
+    /// both must be equal.
     #[test]
     fn what_is_built_in_is_what_people_edit() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
@@ -278,7 +284,10 @@ mod tests {
             .with_material("model = 'yeoh'\nsource = 'a test'")
             .unwrap_err()
             .to_string();
-        assert!(error.contains("says nothing about volume"), "{error}");
+        assert!(
+            error.contains("has no constant for the change of volume"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -294,7 +303,8 @@ mod tests {
         assert!(rough.with_friction(-0.1).is_err());
     }
 
-    /// Whatever a description calls its surfaces, they are kept inside of the folder, by their content.
+    /// Surfaces are saved inside of the folder under names made from their contents, whatever the
+    /// description calls them.
     #[test]
     fn surfaces_are_kept_inside_by_content() {
         let folder = tempfile::tempdir().unwrap();

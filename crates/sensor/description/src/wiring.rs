@@ -1,13 +1,13 @@
-//! Which chips a sensor's taxels are, and where they are on the bus.
+//! The chips of a sensor's taxels and their locations on the bus.
 
 use phystac::{Chip, SwitchAddress, Wired, Wiring, WiringError};
 
 use crate::{Sensor, Taxel};
 
-/// The most taxels that a sensor can be read with.
+/// The largest number of taxels that can be read.
 pub const MOST_TAXELS: usize = 64;
 
-/// A field that is wrong, what is wrong with it, and what to do.
+/// A wrong field, what is wrong with it, and what to do.
 pub(crate) struct Miswired {
     pub(crate) field: String,
     pub(crate) problem: String,
@@ -15,7 +15,8 @@ pub(crate) struct Miswired {
 }
 
 impl Sensor {
-    /// Whether it says how its taxels are wired. One that does not is not read over I²C.
+    /// Whether the description says how the taxels are wired. If not, the sensor is not read over
+    /// I²C.
     #[must_use]
     pub fn is_wired(&self) -> bool {
         let says = |taxel: &Taxel| {
@@ -27,23 +28,24 @@ impl Sensor {
         self.readout.chip.is_some() || self.taxels.iter().any(says)
     }
 
-    /// How its taxels are wired, in their order.
+    /// The wiring of the taxels, in their order.
     ///
     /// # Errors
-    /// What cannot be wired; no description that [`is_wired`](Self::is_wired) and was read.
+    /// The taxels cannot be wired so. This does not happen for a description that was read and
+    /// [`is_wired`](Self::is_wired).
     pub fn wiring(&self) -> Result<Wiring<MOST_TAXELS>, WiringError> {
         let wired: Vec<Wired> = self.taxels.iter().filter_map(|taxel| self.wired(taxel)).collect();
         Wiring::new(&wired)
     }
 
-    /// Whether somebody must confirm what counts of any of its chips stand for.
+    /// Whether any chip has an unknown scale of counts, which somebody must confirm.
     #[must_use]
     pub fn has_unscaled_chips(&self) -> bool {
         let mut chips = self.taxels.iter().filter_map(|taxel| self.chip(taxel));
         chips.any(|chip| !chip.data().knows_its_scale)
     }
 
-    /// The chip of a taxel. `None`: nobody makes one of that name.
+    /// The chip of a taxel. `None`: there is no chip of this name.
     #[must_use]
     pub fn chip(&self, taxel: &Taxel) -> Option<Chip> {
         match taxel.chip.as_deref().or(self.readout.chip.as_deref()) {
@@ -52,7 +54,7 @@ impl Sensor {
         }
     }
 
-    /// How many of which chips, for people to read.
+    /// Number and kind of chips as text.
     pub(crate) fn chips_in_words(&self) -> String {
         let mut kinds: Vec<(Chip, usize)> = Vec::new();
         for chip in self.taxels.iter().filter_map(|taxel| self.chip(taxel)) {
@@ -78,7 +80,7 @@ impl Sensor {
         })
     }
 
-    /// What is wrong with the wiring, if anything is.
+    /// The first error in the wiring.
     pub(crate) fn miswired(&self) -> Option<Miswired> {
         if !self.is_wired() {
             return None;
@@ -95,7 +97,7 @@ impl Sensor {
         }
         for (index, taxel) in self.taxels.iter().enumerate() {
             let problem = match (taxel.switch, taxel.channel) {
-                (Some(_), None) => "stands without a channel".to_owned(),
+                (Some(_), None) => "is given without a channel".to_owned(),
                 (Some(switch), _) if SwitchAddress::new(switch).is_none() => format!("is {switch:#04x}"),
                 _ => continue,
             };
@@ -133,17 +135,17 @@ impl Sensor {
         })
     }
 
-    /// What is wrong, with the fields that a reader finds in the file.
+    /// The error as text, with the fields that a reader finds in the file.
     fn told(&self, error: WiringError) -> String {
         match error {
             WiringError::SamePlace { taxel, other } => {
                 let channel = self.taxels[taxel]
                     .channel
                     .map_or("left out".to_owned(), |channel| channel.to_string());
-                format!("is {channel}, as that of taxels[{other}], whose chip has the same address")
+                format!("is {channel}, the same as that of taxels[{other}], whose chip has the same address")
             }
             WiringError::Hidden { other, .. } => format!(
-                "is such that one of this taxel and taxels[{other}] is behind no switch, and their chips have the same address"
+                "is wrong: this taxel or taxels[{other}] is not behind a switch, and their chips have the same address"
             ),
             error => format!("cannot be: {error}"),
         }
@@ -154,7 +156,7 @@ fn unknown_chip(index: Option<usize>, name: &str) -> Miswired {
     let known: Vec<&str> = Chip::ALL.iter().map(|chip| chip.data().name).collect();
     Miswired {
         field: index.map_or("readout.chip".to_owned(), |index| format!("taxels[{index}].chip")),
-        problem: format!("is `{name}`, which nobody here can read"),
+        problem: format!("is `{name}`, which cannot be read"),
         remedy: format!("give one of {}", known.join(", ")),
     }
 }

@@ -1,4 +1,4 @@
-//! Every way in which a description can be wrong names file, line and field.
+//! Every error in a description names file, line and field.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -63,8 +63,8 @@ fn error(text: &str) -> SensorError {
     Sensor::parse("small.toml", text, &no_files).unwrap_err()
 }
 
-/// Replaces one line of the good file and expects an error about `field` there, or at the line of `at` if
-/// that stands elsewhere.
+/// Replaces one line of the valid file and expects an error about `field` there, or at the line of
+/// `at` if that is given.
 #[track_caller]
 fn expect_at(old: &str, new: &str, at: &str, field: &str, says: &str) {
     assert_eq!(GOOD.matches(old).count(), 1, "`{old}` must be there once");
@@ -135,7 +135,7 @@ fn names_and_channels() {
         "name = \"small\"",
         "name = \"a/b\"",
         "name",
-        "files can bear the name",
+        "the name can be used for files",
     );
     expect("name = \"ball\"", "name = \"\"", "indenters[0].name", "is ``");
     expect_at(
@@ -172,13 +172,13 @@ fn gel_and_inclusions() {
         "max_mm = [2.0, 2.0, 1.0]",
         "max_mm = [2.0, -2.0, 1.0]",
         "inclusions[0].max_mm",
-        "beyond min_mm",
+        "not above min_mm",
     );
     expect(
         "min_mm = [-2.0, -2.0, 0.0]",
         "min_mm = [-2.0, -2.0, 0.5]",
         "inclusions[0].min_mm",
-        "stand on the board",
+        "lowest point on the board",
     );
     let moved = "max_mm = [12.0, 2.0, 1.0]";
     expect_at(
@@ -217,7 +217,7 @@ fn volume_of_a_material() {
         "",
         "[gel.material]",
         "gel.material",
-        "says nothing about volume",
+        "has no constant for the change of volume",
     );
     expect_at(
         ratio,
@@ -322,7 +322,7 @@ fn relaxation_of_a_material() {
         "model = \"stable-neo-hookean\"\nyoungs_modulus_kpa = 60.0",
         "prony",
         "gel.material.prony",
-        "not `stable-neo-hookean`",
+        "which `stable-neo-hookean` is not",
     );
     let term = "{ weight = 0.1, time_s = 1.0 },";
     expect(

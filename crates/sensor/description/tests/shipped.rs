@@ -1,4 +1,4 @@
-//! The descriptions that are shipped are right, and read as people expect.
+//! The shipped descriptions are valid and have the expected values.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -134,7 +134,7 @@ fn descriptions_have_units_and_mark_what_is_inferred() {
     }
 }
 
-/// A sensor whose gel is of the material in a file.
+/// A sensor whose gel has the material of a file.
 fn of_material(path: &str) -> Result<Sensor, twintac_sensor::SensorError> {
     Sensor::parse("strip.toml", &with_material(path), &load)
 }

@@ -1,4 +1,4 @@
-//! Which chips the taxels are, and where they are on the bus.
+//! The chips of the taxels and their locations on the bus.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -95,28 +95,28 @@ fn what_cannot_be_wired_is_an_error_of_the_field() {
         (
             "chip = \"BMP390\"",
             "chip = \"BMP280\"",
-            "`readout.chip` is `BMP280`, which nobody here can read; give one of CPS135B,",
+            "`readout.chip` is `BMP280`, which cannot be read; give one of CPS135B,",
         ),
         ("chip = \"LPS22HB\"", "chip = \"\"", "`taxels[3].chip` is ``"),
         (
             "address = 0x77",
             "address = 0x75",
-            "`taxels[1].address` cannot be: 0x75 is no address of a BMP390",
+            "`taxels[1].address` cannot be: 0x75 is not an address of a BMP390",
         ),
         (
             "address = 0x77\n",
             "",
-            "`taxels[1].channel` is 2, as that of taxels[0], whose chip has the same address",
+            "`taxels[1].channel` is 2, the same as that of taxels[0], whose chip has the same address",
         ),
         (
             "switch = 0x71\nchannel = 2",
             "channel = 2",
-            "`taxels[2].channel` is 2, as that of taxels[0]",
+            "`taxels[2].channel` is 2, the same as that of taxels[0]",
         ),
         (
             "switch = 0x71\nchannel = 2",
             "switch = 0x71",
-            "`taxels[2].switch` stands without a channel",
+            "`taxels[2].switch` is given without a channel",
         ),
         ("switch = 0x71", "switch = 0x6F", "`taxels[2].switch` is 0x6f"),
         (
@@ -127,7 +127,7 @@ fn what_cannot_be_wired_is_an_error_of_the_field() {
         (
             "channel = 2\naddress",
             "channel = 8\naddress",
-            "`taxels[1].channel` cannot be: 8 is no channel of a switch",
+            "`taxels[1].channel` cannot be: 8 is not a channel of a switch",
         ),
         (
             "samples = 4",
@@ -137,12 +137,12 @@ fn what_cannot_be_wired_is_an_error_of_the_field() {
         (
             "chip = \"LPS22HB\"",
             "chip = \"BMP388\"",
-            "`taxels[3].channel` is such that one of this taxel and taxels[0] is behind no switch",
+            "`taxels[3].channel` is wrong: this taxel or taxels[0] is not behind a switch",
         ),
         (
             "rate_hz = 50.0",
             "rate_hz = 50.0\ncounts_per_pa = 8",
-            "`readout.counts_per_pa` stands beside chips that say themselves what they count",
+            "`readout.counts_per_pa` is given, but the scale of the chips is known",
         ),
     ] {
         let error = error_with(from, to);

@@ -1,9 +1,9 @@
-//! A sensor in a few facts.
+//! Facts about a sensor.
 
 use twintac_plot::page::Fact;
 use twintac_sensor::Sensor;
 
-/// Size, material and read-out in words, and what of it is inferred.
+/// Size, material and read-out as short texts, with inferred values marked.
 #[must_use]
 pub fn facts(sensor: &Sensor) -> Vec<Fact> {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);

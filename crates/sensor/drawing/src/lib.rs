@@ -1,10 +1,23 @@
-//! A technical drawing of a sensor, and a few facts in words, both made from its description.
+//! A technical drawing of a sensor, and a list of facts, both made from its description.
+//!
+//! Input is a sensor's description. Output is a [`drawing`], which can be written as SVG or PNG,
+//! with dimensions in mm; and [`facts()`]: size, material and read-out as short texts for a page.
 //!
 //! ```
 //! # fn show(sensor: &twintac_sensor::Sensor) -> Result<(), twintac_plot::PlotError> {
 //! twintac_drawing::drawing(sensor).write("phystac.svg".as_ref())
 //! # }
 //! ```
+//!
+//! # How it works
+//!
+//! A sensor becomes two views (module `views`): from above, and in section through the taxel
+//! nearest to the gel's middle. A view consists of simple shapes, each for gel, shell, board, chip
+//! or port, and of dimensions. Module `sheet` draws the views one below the other in one scale. The
+//! thicknesses of shell wall and board are not part of a description, so they are drawn with fixed
+//! values.
+//!
+//! The crate depends on no solver, device or recording.
 
 mod facts;
 mod sheet;
@@ -15,7 +28,8 @@ use twintac_sensor::Sensor;
 
 pub use facts::facts;
 
-/// The sensor from above, and cut through the taxel nearest to the gel's middle, with dimensions in mm.
+/// The sensor from above and in section through the taxel nearest to the gel's middle, with
+/// dimensions in mm.
 #[must_use]
 pub fn drawing(sensor: &Sensor) -> Scene {
     sheet::Sheet {

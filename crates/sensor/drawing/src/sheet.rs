@@ -1,8 +1,8 @@
-//! Views of plain shapes below one another, with dimensions in mm.
+//! Views made of simple shapes, one below the other, with dimensions in mm.
 
 use twintac_plot::{Anchor, Ink, SMALL, Scene, extent, short, text_width};
 
-/// What a shape is made of; its look follows.
+/// The part of the sensor that a shape shows. It sets the shape's colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     /// The soft gel.
@@ -13,21 +13,21 @@ pub(crate) enum Part {
     Board,
     /// The body of a pressure sensor.
     Chip,
-    /// The opening through which a chip feels pressure.
+    /// The opening of a chip, through which it measures pressure.
     Port,
 }
 
-/// The outline of a shape in its view's plane, mm; the second coordinate grows upwards.
+/// The outline of a shape in the plane of its view, mm; the second coordinate points up.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outline {
-    /// An upright rectangle.
+    /// A rectangle along the axes.
     Rectangle {
         /// Corner with the smallest coordinates, mm.
         min_mm: [f64; 2],
         /// Corner with the largest coordinates, mm.
         max_mm: [f64; 2],
     },
-    /// A polygon through points; the last is joined to the first.
+    /// A closed polygon.
     Polygon {
         /// Corners, mm.
         points_mm: Vec<[f64; 2]>,
@@ -44,35 +44,36 @@ pub(crate) enum Outline {
 /// One shape of a view.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shape {
-    /// What it is made of.
+    /// The part that it shows.
     pub(crate) part: Part,
-    /// Where it is.
+    /// Its outline.
     pub(crate) outline: Outline,
-    /// A short name written beside it, such as a taxel's.
+    /// A short label, such as a taxel's name.
     pub(crate) name: Option<String>,
 }
 
-/// A distance to be labelled: drawn level between verticals, or upright between horizontals.
+/// A dimension: drawn horizontally between vertical lines, or vertically between horizontal ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Dimension {
-    /// From this point, mm.
+    /// First point, mm.
     pub(crate) from_mm: [f64; 2],
-    /// To this point, mm; shares one coordinate with `from_mm`, or the longer direction is labelled.
+    /// Second point, mm. It shares one coordinate with `from_mm`; otherwise the longer direction is
+    /// labelled.
     pub(crate) to_mm: [f64; 2],
 }
 
 /// One view of the sensor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct View {
-    /// Name above the view, such as "top".
+    /// The name above the view, such as "top".
     pub(crate) name: String,
     /// Shapes, from back to front.
     pub(crate) shapes: Vec<Shape>,
-    /// Distances to be labelled; level ones appear below the view, upright ones on its left, in this order.
+    /// Dimensions: horizontal ones below the view, vertical ones on its left, in this order.
     pub(crate) dimensions: Vec<Dimension>,
 }
 
-/// A drawing: views below one another in one scale.
+/// A drawing: views one below the other, in one scale.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sheet {
     /// Title.
@@ -85,7 +86,7 @@ const WIDTH: f64 = 920.0;
 const DIMENSION_ROW: f64 = 24.0;
 
 impl Sheet {
-    /// Draws all views, 920 px wide at most.
+    /// Draws all views, at most 920 px wide.
     pub(crate) fn scene(&self) -> Scene {
         let uprights = |view: &View| view.dimensions.iter().filter(|one| one.is_upright()).count();
         let most_uprights = self.views.iter().map(uprights).max().unwrap_or(0);
@@ -169,13 +170,13 @@ impl Part {
     }
 }
 
-/// Where a view lies on the paper.
+/// Position of a view on the sheet.
 struct Frame {
     origin: [f64; 2],
     x_low_mm: f64,
     y_high_mm: f64,
     scale: f64,
-    /// Room of an upright dimension with its label, px.
+    /// Width of a vertical dimension with its label, px.
     upright_row: f64,
 }
 
@@ -266,7 +267,8 @@ impl View {
         [0, 1].map(|axis| extent(corners.iter().map(|corner| corner[axis])).unwrap_or([0.0, 1.0]))
     }
 
-    /// Draws level dimensions below `bottom` and upright ones left of `left`; returns how many are level.
+    /// Draws horizontal dimensions below `bottom` and vertical ones left of `left`. Returns the
+    /// number of horizontal ones.
     fn draw_dimensions(&self, scene: &mut Scene, frame: &Frame, left: f64, bottom: f64) -> usize {
         let (mut level, mut upright) = (0, 0);
         for dimension in &self.dimensions {
@@ -301,7 +303,7 @@ impl View {
     }
 }
 
-/// A line with a head at either end.
+/// A line with an arrowhead at each end.
 fn arrow(scene: &mut Scene, from: [f64; 2], to: [f64; 2]) {
     scene.line([from, to], Ink::Muted, 1.0);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]).max(1e-9);

@@ -1,4 +1,4 @@
-//! A sensor seen from above, and cut.
+//! A sensor from above and in section.
 
 use glam::DVec3;
 use twintac_plot::fixed;
@@ -6,13 +6,13 @@ use twintac_sensor::Sensor;
 
 use crate::sheet::{Dimension, Outline, Part, Shape, View};
 
-/// Wall of the shell as drawn, mm; its thickness is not part of a description.
+/// Thickness of the shell's wall in the drawing, mm. Descriptions do not contain it.
 const WALL_MM: f64 = 1.5;
 
-/// Board as drawn, mm.
+/// Thickness of the board in the drawing, mm.
 const BOARD_MM: f64 = 1.2;
 
-/// Points along a gel's profile.
+/// Number of points along a gel's profile.
 const PROFILE_POINTS: usize = 80;
 
 fn bounds(sensor: &Sensor) -> (DVec3, DVec3) {
@@ -148,11 +148,11 @@ pub(crate) fn section(sensor: &Sensor) -> View {
     }
 }
 
-/// The gel cut at a y, as a closed line from the board over its top.
+/// The section of the gel at `y_mm`, as a closed line from the board over the top.
 fn profile(sensor: &Sensor, y_mm: f64) -> Outline {
     let (low, high) = bounds(sensor);
     let x_mm = |i: usize| {
-        // A hair inside, so that the outermost points belong to the gel.
+        // Slightly inside, so that the outermost points belong to the gel.
         let fraction = (i as f64 / PROFILE_POINTS as f64).clamp(1e-6, 1.0 - 1e-6);
         low.x + (high.x - low.x) * fraction
     };

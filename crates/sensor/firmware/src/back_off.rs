@@ -1,23 +1,24 @@
-//! How long to leave a bus alone that fails.
+//! Waiting times after failures of the bus.
 
-/// The wait after the second failure running, µs.
+/// The wait after the second failure in a row, µs.
 const FIRST_US: u64 = 10_000;
-/// The longest wait, µs: the host takes a board that says nothing for 3 s for dead.
+/// The longest wait, µs. The host treats a board that sends nothing for 3 s as dead.
 const LONGEST_US: u64 = 1_000_000;
 
-/// Waits that double from failure to failure.
+/// Waits that double with each failure in a row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BackOff {
     failures: u32,
 }
 
 impl BackOff {
-    /// It worked.
+    /// Records a success.
     pub(crate) const fn succeed(&mut self) {
         self.failures = 0;
     }
 
-    /// It failed: how long to wait before the next try, µs. A single failure costs no wait.
+    /// Records a failure and returns the wait before the next try, µs. A single failure causes no
+    /// wait.
     pub(crate) const fn fail(&mut self) -> u64 {
         self.failures = self.failures.saturating_add(1);
         match self.failures {

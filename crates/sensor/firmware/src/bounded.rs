@@ -1,4 +1,4 @@
-//! A bus whose transactions end, or are given up.
+//! A bus with a time limit for each transaction.
 
 use core::fmt;
 use core::future::poll_fn;
@@ -9,10 +9,11 @@ use embedded_hal::i2c::{Error, ErrorKind, ErrorType, Operation};
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
 
-/// A bus on which each transaction is given up after a time.
+/// A bus on which each transaction is given up after a time limit.
 ///
-/// A controller that waits for a line that somebody holds low waits for ever: its future is dropped then. The bus below must stand that; one
-/// that starts its peripheral anew for each transaction does.
+/// A controller that waits for a line which a part holds low would wait for ever, so its future is
+/// dropped at the limit. The bus below must allow that; a bus that starts its peripheral anew for
+/// each transaction does.
 #[derive(Debug)]
 pub(crate) struct Bounded<B, D> {
     bus: B,
@@ -20,17 +21,18 @@ pub(crate) struct Bounded<B, D> {
     limit_us: u32,
 }
 
-/// Why a transaction came to nothing.
+/// Why a transaction failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BoundedError<E> {
-    /// The bus's own error.
+    /// The error of the bus itself.
     Bus(E),
-    /// It did not end in time.
+    /// The transaction did not end in time.
     TimedOut,
 }
 
 impl<B, D> Bounded<B, D> {
-    /// A bus whose transactions may take `limit_us` µs. The longest of any chip takes 1 ms at 100 kHz.
+    /// A bus whose transactions may take `limit_us` µs. The longest transaction of any chip takes 1
+    /// ms at 100 kHz.
     pub(crate) const fn new(bus: B, delay: D, limit_us: u32) -> Self {
         Self { bus, delay, limit_us }
     }
@@ -41,7 +43,7 @@ impl<B, D> Bounded<B, D> {
     }
 }
 
-/// What a future gives, or nothing if the limit comes first.
+/// The output of a future, or [`TimedOut`](BoundedError::TimedOut) if the limit comes first.
 async fn within<T, E>(
     transaction: impl Future<Output = Result<T, E>>,
     limit: impl Future<Output = ()>,
@@ -114,7 +116,7 @@ mod tests {
 
     use super::*;
 
-    /// A controller that waits for a line that is held, and says when it was dropped.
+    /// A controller that waits for a line that is held low. It counts how often it was dropped.
     struct Held(Rc<Cell<u32>>);
     struct Dropped(Rc<Cell<u32>>);
 
@@ -135,7 +137,7 @@ mod tests {
         }
     }
 
-    /// A delay of so many polls for a ms.
+    /// A delay that takes a number of polls for each ms.
     struct Polls;
 
     impl DelayNs for Polls {

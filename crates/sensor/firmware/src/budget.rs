@@ -1,11 +1,11 @@
-//! How many reports a second a line carries.
+//! The report rate that a line allows.
 
 use crate::writer::Form;
 
-/// Bits of a byte on a UART: a start, eight, a stop.
+/// Bits of a byte on a UART: one start bit, eight data bits, one stop bit.
 const UART_BITS_PER_BYTE: u32 = 10;
 
-/// What a report costs on the line.
+/// The size of a report on the line.
 ///
 /// ```
 /// use twintac_firmware::{Form, LineBudget};
@@ -20,7 +20,7 @@ pub struct LineBudget {
 }
 
 impl LineBudget {
-    /// Of a report of so many taxels; of text, the longest that there can be.
+    /// The budget of a report of `n` taxels; for text, of the longest possible line.
     #[must_use]
     pub const fn of(form: Form, n: usize) -> Self {
         Self {
@@ -28,13 +28,13 @@ impl LineBudget {
         }
     }
 
-    /// Bytes of a report.
+    /// Length of a report, bytes.
     #[must_use]
     pub const fn bytes(&self) -> usize {
         self.bytes
     }
 
-    /// Reports a second over a UART of so many bits a second.
+    /// Reports per second over a UART of `baud` bits per second.
     #[must_use]
     pub const fn rate_hz(&self, baud: u32) -> u32 {
         baud / (UART_BITS_PER_BYTE * self.bytes as u32)

@@ -1,8 +1,9 @@
-//! Bytes for the line, in a place of fixed size.
+//! A buffer of fixed size for bytes to the line.
 
 use core::fmt;
 
-/// Up to `B` bytes. What does not fit is left out, and [`is_full`](Self::is_full) says so.
+/// A buffer of up to `B` bytes. Bytes that do not fit are left out, and [`is_full`](Self::is_full)
+/// then returns true.
 #[derive(Clone, Debug)]
 pub struct Buffer<const B: usize> {
     bytes: [u8; B],
@@ -17,7 +18,7 @@ impl<const B: usize> Default for Buffer<B> {
 }
 
 impl<const B: usize> Buffer<B> {
-    /// Nothing yet.
+    /// An empty buffer.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -27,13 +28,13 @@ impl<const B: usize> Buffer<B> {
         }
     }
 
-    /// What is in it.
+    /// The bytes in the buffer.
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         self.bytes.get(..self.len).unwrap_or_default()
     }
 
-    /// Whether something did not fit.
+    /// Whether bytes did not fit.
     #[must_use]
     pub const fn is_full(&self) -> bool {
         self.is_full
@@ -59,7 +60,7 @@ impl<const B: usize> Buffer<B> {
         self.len
     }
 
-    /// Changes a byte that is there.
+    /// Overwrites a byte that is there.
     pub(crate) fn set(&mut self, index: usize, byte: u8) {
         if let Some(place) = self.bytes.get_mut(index) {
             *place = byte;

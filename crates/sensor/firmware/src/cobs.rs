@@ -1,13 +1,13 @@
-//! Consistent overhead byte stuffing (Cheshire and Baker, 1999): zeros between packets and nowhere else.
+//! Consistent overhead byte stuffing (Cheshire and Baker, 1999): zeros occur between packets only.
 
 use crate::buffer::Buffer;
 
-/// The most bytes that a packet of so many has when it is stuffed, with the zero behind it.
+/// The largest size of a stuffed packet of `bytes` bytes, with the zero after it.
 pub(crate) const fn stuffed_bytes(bytes: usize) -> usize {
     bytes + bytes / 254 + 2
 }
 
-/// Puts a stuffed packet into a buffer, with a zero behind it.
+/// Appends a stuffed packet to a buffer, with a zero after it.
 pub(crate) fn stuff<const B: usize>(packet: &[u8], out: &mut Buffer<B>) {
     let mut code_at = out.len();
     let mut code: u8 = 1;
@@ -18,7 +18,8 @@ pub(crate) fn stuff<const B: usize>(packet: &[u8], out: &mut Buffer<B>) {
             code += 1;
         }
         let is_last = index + 1 == packet.len();
-        // A block of 254 bytes stands for no zero; at the end of the packet none has to begin.
+        // A block of 254 bytes stands for no zero. At the end of the packet no new block has to
+        // begin.
         if *byte == 0 || (code == 0xFF && !is_last) {
             out.set(code_at, code);
             code_at = out.len();

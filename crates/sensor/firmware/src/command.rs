@@ -1,43 +1,43 @@
-//! What the host may ask, a line each.
+//! Commands of the host, one for each line.
 
 use core::fmt;
 use core::str;
 
 use crate::writer::Form;
 
-/// The most bytes that a command has.
+/// Length of the longest command, bytes.
 const LONGEST: usize = 32;
 
-/// Something that the host asks.
+/// A command of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// `rate 50` or `rate max`: rounds a second.
+    /// `rate 50` or `rate max`: rounds per second.
     Rate(Rate),
-    /// `scale 32`: counts per Pa, of chips that only count.
+    /// `scale 32`: counts per Pa, for chips whose scale is unknown.
     Scale(u16),
-    /// `form csv` or `form packets`: how reports are written.
+    /// `form csv` or `form packets`: the format of reports.
     Form(Form),
-    /// `restart`: all chips are switched on anew, and channels that are kept closed are looked into at once.
+    /// `restart`: starts all chips anew, and tries isolated channels at once.
     Restart,
-    /// `hello`: what the board is, as a comment.
+    /// `hello`: asks what the board is. The answer is a comment.
     Hello,
 }
 
-/// Rounds a second.
+/// Rounds per second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rate {
-    /// As many as there can be.
+    /// As many as possible.
     Max,
-    /// So many, 1 to 1000.
+    /// This many, 1 to 1000.
     Hz(u16),
 }
 
-/// Why a line is no command.
+/// Why a line is not a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommandError {
-    /// It is longer than any.
+    /// It is longer than any command.
     TooLong,
-    /// It is none that is known, or what stands behind it is none that it takes.
+    /// The command or its argument is unknown.
     Unknown,
 }
 
@@ -81,16 +81,17 @@ impl Command {
     }
 }
 
-/// Takes what the host sends, byte by byte.
+/// Takes the bytes that the host sends, one by one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Commands {
     line: [u8; LONGEST],
-    /// Bytes of the line so far; above [`LONGEST`] it is too long.
+    /// Number of bytes of the line so far; a number above [`LONGEST`] means that the line is too
+    /// long.
     len: usize,
 }
 
 impl Commands {
-    /// Takes a byte: a command or why there is none, at the end of a line that is not empty.
+    /// Takes a byte. At the end of a line that is not empty, returns the command or an error.
     pub(crate) fn push(&mut self, byte: u8) -> Option<Result<Command, CommandError>> {
         if !matches!(byte, b'\r' | b'\n') {
             if let Some(place) = self.line.get_mut(self.len) {

@@ -1,7 +1,8 @@
-//! A report as a line of text: `firmware/lines/csv-8.toml` describes it to the host.
+//! A report as a line of text. `firmware/lines/csv-8.toml` describes it to the host.
 //!
-//! Sequence, time in µs, pressures in Pa, temperatures in °C, codes, trouble, rescues; behind a `*` the CRC-16 of CCITT (0xFFFF at the start) of
-//! all bytes before it, as four hexadecimal digits. `nan` stands for what was not read.
+//! Fields: sequence, time in µs, pressures in Pa, temperatures in °C, fault codes, trouble, number
+//! of rescues; then a `*` and the CRC-16 of CCITT (start value 0xFFFF) of all bytes before it, as
+//! four hexadecimal digits. `nan` stands for a missing value.
 
 use core::fmt::Write;
 
@@ -9,7 +10,7 @@ use crate::buffer::Buffer;
 use crate::packet::CRC;
 use crate::report::Report;
 
-/// The most bytes that a line of so many taxels has.
+/// The largest size of a line of `n` taxels, bytes.
 pub(crate) const fn line_bytes(n: usize) -> usize {
     let pressure = ",-1000000000.00".len();
     let temperature = ",-1000000000.00".len();
@@ -34,7 +35,8 @@ pub(crate) fn write<const N: usize, const B: usize>(report: &Report<N>, out: &mu
     let _ = write!(out, "*{checksum:04X}\r\n");
 }
 
-/// A comma, and a number with two decimals. The program for floating-point numbers as text would be as large as all else together.
+/// A comma, and a number with two decimals. The standard library's formatting of floating-point
+/// numbers would need as much memory as all the rest.
 fn number<const B: usize>(number: Option<f32>, out: &mut Buffer<B>) {
     let Some(number) = number else {
         let _ = out.write_str(",nan");
@@ -61,7 +63,7 @@ mod tests {
             (Some(101_325.0), ",101325.00"),
             (Some(-0.004), ",0.00"),
             (Some(-0.006), ",-0.01"),
-            (Some(-12.345), ",-12.35"), // the nearest number of single precision is -12.3450003
+            (Some(-12.345), ",-12.35"), // the nearest single-precision number is -12.3450003
             (Some(1.999), ",2.00"),
             (Some(999_999_936.0), ",999999936.00"),
             (None, ",nan"),

@@ -1,4 +1,4 @@
-//! All that a board does: it hears commands, reads a round, and writes it.
+//! The whole firmware of a board: it takes commands, reads a round, and writes the report.
 
 use core::fmt;
 
@@ -13,11 +13,11 @@ use crate::node::Node;
 use crate::report::Report;
 use crate::writer::{Form, Writer, longest};
 
-/// Answers that wait for the next round, at most.
+/// Largest number of answers that wait for the next round.
 const MOST_ANSWERS: usize = 4;
 
-/// A node, a writer, and what the host asks of both. A board's program takes bytes to [`hear`](Self::hear), and sends what
-/// [`round`](Self::round) writes.
+/// A node, a writer, and the commands for both. A board's program passes the host's bytes to
+/// [`hear`](Self::hear), and sends the bytes that [`round`](Self::round) writes.
 #[derive(Debug)]
 pub struct Firmware<I2C, D, C, R, const N: usize> {
     node: Node<I2C, D, C, R, N>,
@@ -27,19 +27,19 @@ pub struct Firmware<I2C, D, C, R, const N: usize> {
     is_to_restart: bool,
 }
 
-/// What the host is answered, in a comment.
+/// An answer to the host, sent as a comment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// It is done.
+    /// The command was executed.
     Done(Command),
     /// What the board is.
     Hello {
-        /// How many taxels it has.
+        /// Number of taxels.
         n: usize,
-        /// How many rounds a second it can do, Hz.
+        /// Largest possible rate, rounds per second, Hz.
         most_hz: u32,
     },
-    /// What was wrong.
+    /// The command was wrong.
     Wrong(CommandError),
 }
 
@@ -71,7 +71,7 @@ where
     C: Clock + Clone,
     R: FnMut(&mut I2C) -> Result<(), RecoveryError>,
 {
-    /// Of a node; the first round says what the board is.
+    /// The firmware of a node. The first round also sends what the board is.
     pub fn new(node: Node<I2C, D, C, R, N>, form: Form) -> Self {
         let mut firmware = Self {
             node,
@@ -85,7 +85,7 @@ where
         firmware
     }
 
-    /// Takes a byte of the host's; a command counts from the next round on.
+    /// Takes a byte from the host. A command takes effect with the next round.
     pub fn hear(&mut self, byte: u8) {
         match self.commands.push(byte) {
             None => {}
@@ -94,7 +94,7 @@ where
         }
     }
 
-    /// Does the next round when its time has come, and writes it.
+    /// Waits until the next round is due, reads it, and writes its report.
     pub async fn round<const B: usize>(&mut self, out: &mut Buffer<B>) -> Report<N> {
         const {
             assert!(
@@ -129,7 +129,7 @@ where
         self.answer(Answer::Hello { n: N, most_hz });
     }
 
-    /// Keeps an answer for the next round; one too many is not said.
+    /// Keeps an answer for the next round. If too many wait, it is dropped.
     fn answer(&mut self, answer: Answer) {
         if let Some(place) = self.answers.iter_mut().find(|place| place.is_none()) {
             *place = Some(answer);

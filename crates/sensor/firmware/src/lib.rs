@@ -1,15 +1,33 @@
-//! What the microcontroller of a tactile sensor does, without its pins: `no_std`, no allocation, no unsafe code.
+//! The firmware of a tactile sensor's microcontroller, without its pins: `no_std`, no allocation,
+//! no unsafe code.
 //!
-//! A [`Node`] reads all barometers in rounds through [`phystac`], frees a bus that hangs, and says in each [`Report`] what it could not read
-//! and why. A [`Writer`] makes lines of text or packets of reports, which `twintac stream --serial` reads with the descriptions in
-//! `firmware/lines`. A [`Firmware`] is both, and does what the host asks. A board's program only adds pins, clocks and a port: `firmware/pico2` and
-//! `firmware/esp32c3` do.
+//! Input is an asynchronous I²C bus ([`embedded_hal_async`]) with the sensor's chips
+//! ([`NodeSettings`]), a clock, and the bytes that the host sends ([`Command`]). Output is bytes
+//! for a serial line: text or packets, with pressures in Pa, temperatures in °C and times in µs.
 //!
-//! The node is asynchronous, over [`embedded_hal_async`]: while chips convert and bytes go over the bus, the same core serves USB, and a
-//! transaction that never ends can be given up. A bus that blocks is one whose futures are ready at once
-//! ([`phystac::AtOnce`]).
+//! - [`Node`] reads all barometers in rounds with the driver [`phystac`]. It frees a bus that
+//!   hangs. Each [`Report`] says which taxels could not be read, and why.
+//! - [`Writer`] writes reports as lines of text or as packets ([`Form`]). `twintac stream --serial`
+//!   reads them with the descriptions in `firmware/lines`.
+//! - [`Firmware`] combines both and executes the host's commands. A board's program only adds pins,
+//!   clocks and a port, as `firmware/pico2` and `firmware/esp32c3` do.
 //!
-//! Never run on a board: the tests run it on an emulated bus.
+//! # How it works
+//!
+//! The node is asynchronous. While chips convert and bytes go over the bus, the same core serves
+//! USB, and a transaction that does not end can be given up. A blocking bus is one whose futures
+//! are ready at once ([`phystac::AtOnce`]).
+//!
+//! A round triggers all chips, waits for their conversions, reads each chip and makes a report. A
+//! fault of one taxel is reported with that taxel, and the others have their readings. If the whole
+//! round fails, the report says why ([`Trouble`]). If the bus hangs, the node calls [`rescue()`],
+//! which clocks the bus and resets the switches. Waits between failures in a row grow from 10 ms to
+//! 1 s. A value that was not read is never sent as a number.
+//!
+//! [`LineBudget`] computes how many reports per second a line carries.
+//!
+//! The crate uses no files, threads or network, and no recording or device of this workspace. It
+//! was never run on a board; the tests run it on an emulated bus.
 
 #![no_std]
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! A sensor's rounds of readings.
+//! Rounds of readings of a sensor.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -14,12 +14,13 @@ use crate::report::{Report, needs_scale};
 use crate::settings::NodeSettings;
 use crate::trouble::Trouble;
 
-/// Reads `N` barometers in rounds, and goes on whatever happens to them or to the bus.
+/// Reads `N` barometers in rounds, and continues after any failure of them or of the bus.
 ///
-/// A round triggers all chips with one write, waits, and reads each; [`phystac`] tells how, and in every sixteenth round reads temperatures
-/// that are converted apart. What goes wrong with one taxel stands in its report. When the whole round fails, `rescue` frees the bus: it
-/// resets the switches, and gives nine clocks where a board can. Failures that follow each other are left alone for 10 ms, then for twice
-/// as long, up to a second; each is reported.
+/// A round triggers all chips at the same moment, waits, and reads each chip with [`phystac`]. In
+/// every sixteenth round it also reads temperatures that are converted separately. A fault of one
+/// taxel is in its report. If the whole round fails, `rescue` frees the bus: it resets the
+/// switches, and sends nine clocks if the board can. After failures in a row the node waits 10 ms,
+/// then twice as long each time, up to one second. Each failure is reported.
 #[derive(Debug)]
 pub struct Node<I2C, D, C, R, const N: usize> {
     sensor: PhysTac<Bounded<I2C, D>, D, C, N>,
@@ -29,13 +30,13 @@ pub struct Node<I2C, D, C, R, const N: usize> {
     settings: NodeSettings<N>,
     pace: Pace,
     back_off: BackOff,
-    /// No round before, µs of the clock.
+    /// The next round starts no earlier than this, µs of the clock.
     not_before_us: u64,
     sequence: u32,
     rescues: u16,
-    /// What the trigger of the round ahead said.
+    /// The failure of the trigger of the next round, if it failed.
     failed: Option<Trouble>,
-    /// The scale that free air speaks for.
+    /// The scale at which the taxels read the pressure of free air, counts per Pa.
     hint: Option<u16>,
 }
 
@@ -46,7 +47,8 @@ where
     C: Clock + Clone,
     R: FnMut(&mut I2C) -> Result<(), RecoveryError>,
 {
-    /// A node on a bus. Nothing is sent yet. `clock` counts µs since the board was switched on; `rescue` frees the bus, with the switches' RESET.
+    /// A node on a bus. Sends nothing yet. `clock` counts µs since power-on. `rescue` frees the bus
+    /// with the switches' RESET.
     pub fn new(bus: I2C, delay: D, clock: C, rescue: R, settings: NodeSettings<N>) -> Self {
         let bounded = Bounded::new(bus, delay.clone(), settings.transaction_us);
         Self {
@@ -65,22 +67,24 @@ where
         }
     }
 
-    /// How it reads.
+    /// The settings.
     pub const fn settings(&self) -> &NodeSettings<N> {
         &self.settings
     }
 
-    /// The scale that the last round speaks for, if its chips only count and nothing touched them: counts per Pa.
+    /// The scale at which the taxels of the last round read the pressure of free air, counts per
+    /// Pa. `None` if no scale is missing or no single scale fits. It is valid only if nothing
+    /// touched the sensor.
     pub const fn hint(&self) -> Option<u16> {
         self.hint
     }
 
-    /// The most rounds a second that the bus and the chips allow, Hz.
+    /// The largest rate that bus and chips allow, rounds per second, Hz.
     pub(crate) fn most_hz(&self) -> f32 {
         Budget::new(&self.settings.sensor, self.settings.bus_hz).rate_hz()
     }
 
-    /// From the next round on, so many a second.
+    /// Sets the rate, from the next round on.
     pub(crate) const fn set_rate(&mut self, rate: Rate) {
         self.settings.period_us = match rate {
             Rate::Max | Rate::Hz(0) => 0,
@@ -89,12 +93,12 @@ where
         self.pace = Pace::new(self.settings.period_us);
     }
 
-    /// From the next round on, counts stand for so many to a Pa.
+    /// Sets the scale, counts per Pa, from the next round on.
     pub(crate) const fn set_scale(&mut self, counts_per_pa: u16) {
         self.settings.transfer = Some(Transfer::per_pa(counts_per_pa));
     }
 
-    /// Switches all chips on anew before the next round, and looks into channels that are kept closed.
+    /// Starts all chips anew before the next round, and tries isolated channels.
     pub async fn restart(&mut self) {
         self.sensor.readmit();
         self.failed = match self.sensor.start().await {
@@ -105,8 +109,8 @@ where
         self.not_before_us = 0;
     }
 
-    /// The next round, when its time has come. Ends with the trigger of the one after it, if rounds follow each other at once: the chips convert
-    /// while the report is sent.
+    /// Waits until the next round is due, and reads it. If rounds follow each other without a
+    /// pause, it also triggers the round after it: the chips then convert while the report is sent.
     pub async fn round(&mut self) -> Report<N> {
         let now_us = self.clock.now_us();
         let wait_us = self.pace.turn(now_us);
@@ -140,7 +144,8 @@ where
         }
     }
 
-    /// Frees the bus, if that may help. A pin that fails leaves it as it is: the next round says so.
+    /// Frees the bus, if that may help. If a pin fails, the bus stays as it is, and the next round
+    /// reports it.
     fn free(&mut self, trouble: Trouble) {
         if trouble.needs_rescue() {
             let rescue = &mut self.rescue;

@@ -1,9 +1,9 @@
-//! When rounds begin.
+//! The start times of rounds.
 
-/// Rounds on a grid of times, or one right after the other.
+/// Rounds on a grid of times, or one directly after the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
-    /// Time from one round to the next, µs; 0: as short as it can be.
+    /// Time from one round to the next, µs. 0: as short as possible.
     period_us: u32,
     next_us: Option<u64>,
 }
@@ -16,12 +16,13 @@ impl Pace {
         }
     }
 
-    /// Whether rounds follow each other at once.
+    /// Whether rounds follow each other without a pause.
     pub(crate) const fn is_free(&self) -> bool {
         self.period_us == 0
     }
 
-    /// How long to wait for the next round, µs. A round that is too late by a period or more starts a new grid: none is made up for.
+    /// Wait until the next round, µs. A round that is late by a period or more starts a new grid;
+    /// missed rounds are not made up for.
     pub(crate) fn turn(&mut self, now_us: u64) -> u64 {
         if self.is_free() {
             return 0;
@@ -44,10 +45,10 @@ mod tests {
     fn rounds_keep_their_grid_and_make_up_for_none() {
         let mut pace = Pace::new(10_000);
         assert_eq!(pace.turn(500), 0);
-        assert_eq!(pace.turn(7_500), 3_000); // 10 500
-        assert_eq!(pace.turn(21_000), 0); // 20 500 was due: late, but the grid is kept
-        assert_eq!(pace.turn(29_000), 1_500); // 30 500
-        assert_eq!(pace.turn(95_000), 0); // six are gone
+        assert_eq!(pace.turn(7_500), 3_000); // due at 10 500
+        assert_eq!(pace.turn(21_000), 0); // due at 20 500: late, but the grid is kept
+        assert_eq!(pace.turn(29_000), 1_500); // due at 30 500
+        assert_eq!(pace.turn(95_000), 0); // six rounds were missed
         assert_eq!(pace.turn(96_000), 9_000);
         assert_eq!(Pace::new(0).turn(7), 0);
     }

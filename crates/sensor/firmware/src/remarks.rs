@@ -1,4 +1,4 @@
-//! What a person at a terminal is told between the lines.
+//! Comments between the lines, for a person at a terminal.
 
 use core::fmt::Write;
 
@@ -8,10 +8,10 @@ use crate::buffer::Buffer;
 use crate::report::Report;
 use crate::trouble::Trouble;
 
-/// The most bytes that a round's remarks have.
+/// The largest size of a round's comments, bytes.
 pub(crate) const REMARK_BYTES: usize = 128;
 
-/// Says once what changed: in each round of one taxel, or of the bus.
+/// Writes a comment for each change, once: in a round for one taxel or for the bus.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Remarks<const N: usize> {
     states: [TaxelState; N],
@@ -30,7 +30,8 @@ impl<const N: usize> Default for Remarks<N> {
 }
 
 impl<const N: usize> Remarks<N> {
-    /// A comment, if anything changed. `hint`: the scale that free air speaks for.
+    /// Writes a comment, if anything changed. `hint`: the scale at which the taxels read the
+    /// pressure of free air, counts per Pa.
     pub(crate) fn write<const B: usize>(
         &mut self,
         report: &Report<N>,
@@ -43,7 +44,7 @@ impl<const N: usize> Remarks<N> {
             return;
         }
         if report.trouble != Trouble::None {
-            return; // the taxels' states say the same eight times
+            return; // the eight taxels' states would all say the same
         }
         for (index, (said, taxel)) in self.states.iter_mut().zip(&report.taxels).enumerate() {
             if *said != taxel.state {

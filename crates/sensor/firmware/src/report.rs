@@ -1,35 +1,36 @@
-//! What a round gave.
+//! The result of a round.
 
 use phystac::{Chip, Frame, Pressure, Sample, TaxelState, Transfer};
 
 use crate::trouble::Trouble;
 
-/// Numbers beyond this are no readings, whatever made them, Pa and °C.
+/// Numbers beyond this are not readings, whatever caused them; Pa and °C.
 const MOST: f32 = 1e9;
 
-/// What one taxel gave in a round.
+/// The reading of one taxel in a round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Taxel {
-    /// Pressure, Pa; none if `state` says why.
+    /// Pressure, Pa. `None` if `state` is a fault.
     pub pressure_pa: Option<f32>,
-    /// Temperature of the chip, °C, if it gave one.
+    /// Temperature of the chip, °C, if it was read.
     pub temperature_c: Option<f32>,
-    /// Whether there is a pressure, and why not.
+    /// Whether there is a pressure, and if not, why.
     pub state: TaxelState,
 }
 
-/// What a round gave: readings, and what could not be read and why. Nothing that was not read is a number.
+/// The result of a round: readings, and which taxels could not be read and why. A value that was
+/// not read is never a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report<const N: usize> {
-    /// The round's number. Counts rounds, and starts anew after 2³² - 1.
+    /// Number of the round. It rolls over after 2³² - 1.
     pub sequence: u32,
-    /// When all barometers began to convert, or the round failed, µs since the board was switched on.
+    /// When all barometers started to convert, or the round failed, µs since power-on.
     pub triggered_us: u64,
-    /// What each taxel gave.
+    /// The reading of each taxel.
     pub taxels: [Taxel; N],
-    /// What went wrong with the round as a whole.
+    /// The failure of the round as a whole.
     pub trouble: Trouble,
-    /// How often the switches were reset since the board was switched on; stays at its most.
+    /// Number of resets of the switches since power-on; it stops at its largest value.
     pub rescues: u16,
 }
 
@@ -79,7 +80,7 @@ impl<const N: usize> Report<N> {
         }
     }
 
-    /// Of a round in which nothing was read.
+    /// The report of a round in which nothing was read.
     pub(crate) const fn failed(trouble: Trouble, now_us: u64, sequence: u32, rescues: u16) -> Self {
         let state = match trouble {
             Trouble::NotTriggered => TaxelState::Missing,
@@ -95,7 +96,7 @@ impl<const N: usize> Report<N> {
     }
 }
 
-/// Whether a chip only counts.
+/// Whether a chip has an unknown scale.
 pub(crate) const fn needs_scale(chip: Chip) -> bool {
     !chip.data().knows_its_scale
 }

@@ -1,14 +1,16 @@
-//! Freeing a bus that hangs.
+//! Frees a bus that hangs.
 
 use phystac::recovery::RecoveryError;
 
-/// Frees a bus: clocks first, as a chip that holds it gets them only while its channel is open; then the switch's RESET, which closes all
-/// channels; and clocks once more if the bus was still held before.
+/// Frees a bus. It sends clocks first, because a chip that holds the bus gets them only while its
+/// channel is open. Then it pulses the switch's RESET, which closes all channels. It sends clocks
+/// again if the first ones did not free the bus.
 ///
-/// `clock_out` gives nine clocks and a STOP, and sees whether both lines are high; `reset` pulls RESET low for a moment, if it is wired.
+/// `clock_out` sends nine clocks and a STOP, and checks that both lines are high. `reset` pulses
+/// RESET low, if it is wired.
 ///
 /// # Errors
-/// A line that stays low, or a pin that does not do as it is told.
+/// A line stays low, or a pin fails.
 pub fn rescue(
     mut clock_out: impl FnMut() -> Result<(), RecoveryError>,
     reset: impl FnOnce() -> Result<(), RecoveryError>,

@@ -1,25 +1,26 @@
-//! What a node is told when it starts.
+//! The settings of a node.
 
 use phystac::{Chip, Settings, Transfer, Wired, Wiring, WiringError};
 
-/// How a node reads.
+/// The settings of a node.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeSettings<const N: usize> {
-    /// Which chip each taxel is and where, and how long they take.
+    /// The chip and location of each taxel, and their timing.
     pub sensor: Settings<N>,
-    /// What counts stand for, of chips that do not know it. `None`: those are marked until the host says it.
+    /// The scale of chips with an unknown scale. `None`: readings of such chips are marked until
+    /// the host sends the scale.
     pub transfer: Option<Transfer>,
-    /// Time from one round to the next, µs. 0: as short as it can be.
+    /// Time from one round to the next, µs. 0: as short as possible.
     pub period_us: u32,
-    /// After how long a transaction is given up, µs.
+    /// Time limit of a transaction, µs.
     pub transaction_us: u32,
-    /// Clock of the bus, Hz, for what is said of rates.
+    /// Clock of the bus, Hz, for computing rates.
     pub bus_hz: u32,
 }
 
 impl<const N: usize> NodeSettings<N> {
-    /// Taxel `i` a chip on channel `i` of the switch at 0x70, or on channel `i - 8` of the one at 0x71, and so on. As quick as it can be at
-    /// 400 kHz, transactions of at most 5 ms.
+    /// Taxel `i` is a chip on channel `i` of the switch at 0x70, or on channel `i - 8` of the one
+    /// at 0x71, and so on. Rounds as fast as possible at 400 kHz, transactions of at most 5 ms.
     ///
     /// # Errors
     /// More than 64 taxels.
@@ -41,10 +42,11 @@ impl<const N: usize> NodeSettings<N> {
     }
 }
 
-/// The chip of that name as it stands in [`Chip`]'s table, capitals and all: for names that are given when the program is built.
+/// The chip whose name in [`Chip`]'s table is exactly this text, upper and lower case included. For
+/// names that are given when the program is built.
 ///
 /// # Panics
-/// If there is none. In a constant, the build fails then.
+/// There is no such chip. In a constant, the build fails then.
 #[must_use]
 pub const fn chip_named(name: &str) -> Chip {
     let mut index = 0;
@@ -59,10 +61,11 @@ pub const fn chip_named(name: &str) -> Chip {
     )
 }
 
-/// The counts per Pa that stand in a text; 0 for an empty one: for what is given when the program is built.
+/// The counts per Pa in a text; 0 for an empty text. For values that are given when the program is
+/// built.
 ///
 /// # Panics
-/// If it is no number from 0 to 65535. In a constant, the build fails then.
+/// The text is not a number from 0 to 65535. In a constant, the build fails then.
 #[must_use]
 pub const fn scale_of(text: &str) -> u16 {
     if text.is_empty() {
@@ -70,7 +73,7 @@ pub const fn scale_of(text: &str) -> u16 {
     }
     match u16::from_str_radix(text, 10) {
         Ok(scale) => scale,
-        Err(_) => panic!("the scale is no number of counts per Pa: expected one such as `32`"),
+        Err(_) => panic!("the scale is not a number of counts per Pa: expected one such as `32`"),
     }
 }
 

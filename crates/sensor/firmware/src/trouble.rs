@@ -1,29 +1,29 @@
-//! What went wrong with a whole round, as a number on the line.
+//! The failure of a whole round, as a number on the line.
 
 use core::fmt;
 
 use phystac::Error;
 
-/// What went wrong with a whole round. Numbers stand on lines and stay as they are.
+/// The failure of a whole round. Lines contain these numbers: they never change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Trouble {
-    /// Nothing.
+    /// No failure.
     #[default]
     None = 0,
     /// The bus failed, and works again.
     Bus = 1,
-    /// No transaction went through any more; the bus was to be freed since.
+    /// No transaction succeeded any more. The node has tried to free the bus since.
     BusHung = 2,
     /// A switch does not acknowledge.
     SwitchMissing = 3,
     /// A switch lost its mask: it lost power or was reset.
     SwitchReset = 4,
-    /// Something on the bus itself answers where barometers behind switches do.
+    /// A device on the bus itself answers at the address of barometers behind switches.
     AddressConflict = 5,
     /// No barometer took the trigger.
     NotTriggered = 6,
-    /// Something else.
+    /// Another failure.
     Other = 7,
 }
 

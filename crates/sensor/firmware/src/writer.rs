@@ -7,18 +7,18 @@ use crate::remarks::{REMARK_BYTES, Remarks};
 use crate::report::Report;
 use crate::{csv, packet};
 
-/// How reports are written.
+/// The format of reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
     /// Lines of text with a checksum, and comments.
     #[default]
     Csv,
-    /// Packets with a checksum between zeros, and nothing else.
+    /// Packets with a checksum, separated by zeros, and nothing else.
     Packets,
 }
 
 impl Form {
-    /// The most bytes that a report of so many taxels has.
+    /// The largest size of a report of `n` taxels, bytes.
     #[must_use]
     pub const fn longest(self, n: usize) -> usize {
         match self {
@@ -28,26 +28,28 @@ impl Form {
     }
 }
 
-/// The most bytes that an answer or a comment has.
+/// The largest size of an answer or a comment, bytes.
 const COMMENT_BYTES: usize = 160;
 
-/// The most bytes that a round writes for so many taxels: four answers, a remark and a report.
+/// The largest number of bytes that a round writes for `n` taxels: four answers, a comment and a
+/// report.
 #[must_use]
 pub const fn longest(n: usize) -> usize {
     let (csv, packets) = (Form::Csv.longest(n), Form::Packets.longest(n));
     4 * COMMENT_BYTES + REMARK_BYTES + if csv > packets { csv } else { packets }
 }
 
-/// Writes reports in one form or the other.
+/// Writes reports in one of the formats.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Writer<const N: usize> {
-    /// In which.
+    /// The format.
     pub form: Form,
     remarks: Remarks<N>,
 }
 
 impl<const N: usize> Writer<N> {
-    /// Adds a report to a buffer; as text, behind a comment if something changed. `hint`: the scale that free air speaks for.
+    /// Appends a report to a buffer; as text, after a comment if something changed. `hint`: the
+    /// scale at which the taxels read the pressure of free air, counts per Pa.
     pub fn write<const B: usize>(&mut self, report: &Report<N>, hint: Option<u16>, out: &mut Buffer<B>) {
         match self.form {
             Form::Csv => {
@@ -58,7 +60,7 @@ impl<const N: usize> Writer<N> {
         }
     }
 
-    /// Adds a comment to a buffer, if the form has any.
+    /// Appends a comment to a buffer, if the format has comments.
     pub fn comment<const B: usize>(&self, comment: impl fmt::Display, out: &mut Buffer<B>) {
         if self.form == Form::Csv {
             let _ = write!(out, "# {comment}\r\n");

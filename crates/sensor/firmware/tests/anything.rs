@@ -1,4 +1,5 @@
-//! Whatever the bus answers, the firmware goes on, and the host never hears a reading that the chip did not give.
+//! Whatever the bus answers, the firmware continues, and the host never gets a reading that no chip
+//! gave.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -16,7 +17,7 @@ use twintac_line::{Decoder, Description, Heard, LineFrame};
 const N: usize = 8;
 const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 
-/// Time that passes where somebody waits.
+/// Time, which passes while somebody waits.
 #[derive(Clone)]
 struct Time(Rc<Cell<u64>>);
 
@@ -32,14 +33,14 @@ impl DelayNs for Time {
     }
 }
 
-/// A switch and eight CPS135B, as well as they are told to behave.
+/// A switch and eight CPS135B that behave as the script says.
 struct Wild {
     time: Time,
-    /// What happens in the transactions to come; when it is over, all is well.
+    /// What happens in the next transactions. After the end of the script everything works.
     script: Vec<u8>,
     at: usize,
     mask: u8,
-    /// What reads of pressure gave in this round: with which channels open, and which counts.
+    /// The pressures read in this round: which channels were open, and which counts were given.
     given: Rc<RefCell<Vec<(u8, u32)>>>,
 }
 
@@ -48,7 +49,7 @@ impl Wild {
         match (address, register, read.len()) {
             (0x70, ..) => read[0] = self.mask,
             (_, 0x06, 5) => {
-                // An atmosphere in counts, told apart by channel and moment.
+                // An atmosphere in counts, different for each channel and moment.
                 let counts =
                     3_242_400 + 100 * u32::from(self.mask.trailing_zeros() as u8) + u32::from(salt % 64);
                 let [_, bytes @ ..] = counts.to_be_bytes();
@@ -72,7 +73,7 @@ impl I2c for Wild {
         match what {
             200..=219 => return Err(NACK),
             220..=234 => return Err(ErrorKind::Bus),
-            235..=239 => self.mask = 0, // lost power
+            235..=239 => self.mask = 0, // loses power
             _ => {}
         }
         let is_chip = address == 0x6D && self.mask != 0;
@@ -91,7 +92,7 @@ impl I2c for Wild {
                 Operation::Read(read) => {
                     self.answer(address, register, read, what);
                     if what >= 240 {
-                        read.iter_mut().for_each(|byte| *byte ^= what.rotate_left(3)); // nonsense
+                        read.iter_mut().for_each(|byte| *byte ^= what.rotate_left(3)); // sends wrong bytes
                     }
                     if let (0x6D, 0x06, [high, middle, low, _, _]) = (address, register, &**read) {
                         let counts = u32::from_be_bytes([0, *high, *middle, *low]);
@@ -117,12 +118,12 @@ fn description(form: Form) -> Description {
     .unwrap()
 }
 
-/// The pressure that counts of this part stand for, Pa.
+/// The pressure of this part's counts, Pa.
 fn pressure_pa(counts: u32) -> f64 {
     f64::from((counts << 8).cast_signed() >> 8) / 32.0
 }
 
-/// That a frame says what was read in its round and nothing else.
+/// Checks that a frame contains only readings of its round.
 fn check(frame: &LineFrame, report: &Report<N>, given: &[(u8, u32)]) {
     assert_eq!(frame.sequence, Some(u64::from(report.sequence)));
     for (index, (pressure_kpa, fault)) in frame.pressures_kpa.iter().zip(&frame.faults).enumerate() {

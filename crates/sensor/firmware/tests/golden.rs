@@ -1,4 +1,4 @@
-//! What reports are on the line, byte by byte, and what the host makes of it.
+//! Reports on the line, byte by byte, and as the host reads them.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -10,7 +10,8 @@ use twintac_line::{Decoder, Description, Heard, LineFrame};
 
 const N: usize = 8;
 
-/// A report with all that there can be: a time beyond 32 bits, a taxel that is missing and one beyond its range, a negative temperature.
+/// A report with every special case: a time beyond 32 bits, a missing taxel, one beyond its range,
+/// a negative temperature.
 fn report() -> Report<N> {
     let good = |pressure_pa, temperature_c| Taxel {
         pressure_pa: Some(pressure_pa),
@@ -99,7 +100,7 @@ fn a_packet_is_these_bytes() {
         "030301010440420f0d80e6c5478f4dc3481050c3470103c07f010fc07f80e6c54780e6c54780e6c5470107c841e17a9e410103e8c00103c07f0103d4410103c8410103c8410103c8410101030106010101020203fdca00"
     );
     assert_eq!(bytes.len(), Form::Packets.longest(N));
-    check(&heard("packets-8.toml", &bytes), 4e-5); // a single-precision number of 400 kPa
+    check(&heard("packets-8.toml", &bytes), 4e-5); // tolerance of a single-precision number at 400 kPa
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What tells a whole line or packet from a torn one.
+//! Checksums, which detect torn lines and packets.
 
 use crc::{CRC_8_SMBUS, CRC_16_IBM_3740, CRC_16_MODBUS, CRC_32_ISO_HDLC, Crc};
 use serde::{Deserialize, Serialize};
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 pub enum Checksum {
     /// All bytes combined by exclusive or, as in NMEA 0183.
     Xor8,
-    /// All bytes added up, without carries.
+    /// All bytes added up, modulo 256.
     Sum8,
     /// CRC-8 of SMBus: polynomial 0x07.
     Crc8,
-    /// CRC-16 of CCITT with 0xFFFF at the start: polynomial 0x1021.
+    /// CRC-16 of CCITT with the start value 0xFFFF: polynomial 0x1021.
     Crc16Ccitt,
     /// CRC-16 of Modbus: polynomial 0x8005, reflected.
     Crc16Modbus,
@@ -27,7 +27,7 @@ const MODBUS: Crc<u16> = Crc::<u16>::new(&CRC_16_MODBUS);
 const CRC32: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 impl Checksum {
-    /// Its bytes.
+    /// Its length, bytes.
     #[must_use]
     pub const fn bytes(self) -> usize {
         match self {
@@ -37,7 +37,7 @@ impl Checksum {
         }
     }
 
-    /// Of some bytes.
+    /// The checksum of these bytes.
     #[must_use]
     pub fn of(self, bytes: &[u8]) -> u32 {
         match self {
@@ -55,7 +55,7 @@ impl Checksum {
 mod tests {
     use super::*;
 
-    /// The check values of the catalogue of parametrised CRC algorithms, for the digits 1 to 9.
+    /// The check values in the catalogue of parametrised CRC algorithms, for the digits 1 to 9.
     #[test]
     fn check_values() {
         let digits = b"123456789";

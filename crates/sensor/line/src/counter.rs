@@ -1,9 +1,10 @@
 //! Counters that roll over.
 
-/// A fall of at least this part of a counter's range is a roll-over; a smaller one is a number out of order.
+/// A decrease by at least this fraction of a counter's range is a roll-over. A smaller decrease is
+/// a number out of order.
 const ROLLED_OVER: f64 = 0.5;
 
-/// A counter that goes on where the one on the line begins anew.
+/// A counter that continues where the counter on the line rolls over.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Counter {
     wraps_at: Option<f64>,
@@ -11,16 +12,16 @@ pub(crate) struct Counter {
     last: Option<f64>,
 }
 
-/// What a count is, after the one before.
+/// The change from one count to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
-    /// The first one.
+    /// It is the first count.
     First,
-    /// So much further: above zero.
+    /// It increased by this much, above zero.
     On(f64),
-    /// The same again.
+    /// It is the same.
     Same,
-    /// So much back.
+    /// It decreased by this much.
     Back(f64),
 }
 
@@ -32,7 +33,7 @@ impl Counter {
         }
     }
 
-    /// How a count relates to the last one that was taken, and what it is without roll-overs.
+    /// The change since the last count that was taken, and the count with roll-overs undone.
     pub(crate) fn look(&self, count: f64) -> (Step, f64) {
         let Some(last) = self.last else {
             return (Step::First, count);
@@ -51,13 +52,13 @@ impl Counter {
         }
     }
 
-    /// Takes a count that [`look`](Self::look) gave.
+    /// Takes a count, with the value that [`look`](Self::look) returned for it.
     pub(crate) fn take(&mut self, count: f64, whole: f64) {
         self.turns = whole - count;
         self.last = Some(whole);
     }
 
-    /// The counter begins anew.
+    /// Starts anew.
     pub(crate) fn restart(&mut self) {
         self.turns = 0.0;
         self.last = None;

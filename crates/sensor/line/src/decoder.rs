@@ -6,24 +6,25 @@ use crate::heard::{Heard, Passed, Tally};
 use crate::row::{LineFrame, Row};
 use crate::{packet, text};
 
-/// Takes a line's bytes as they come, and says what they are.
+/// Decodes a line's bytes as they arrive.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     description: Description,
     n_taxels: usize,
     buffer: Vec<u8>,
-    /// Whether the line that comes is too long and waits for its end.
+    /// Whether the current line is too long; its end is awaited.
     is_endless: bool,
     /// Whether bytes were passed over since the last packet.
     is_astray: bool,
-    /// Whether the first line is still to come: the port may have been opened in its middle.
+    /// Whether no line has ended yet: the port may have been opened in the middle of a line.
     is_first: bool,
     row: Row,
-    /// Of the last frame's number and those before it, the lowest bit first: whether its frame was there.
+    /// For the last frame's number and the numbers before it, the lowest bit first: whether the
+    /// frame arrived.
     recent: u64,
     /// The row of the last frame.
     last: Row,
-    /// Lines of the frame under way, where it has several, and how many.
+    /// The lines of the current frame, if a frame has several, and their number.
     lines_under_way: String,
     n_lines: usize,
     sequence: Counter,
@@ -31,14 +32,15 @@ pub struct Decoder {
     tally: Tally,
 }
 
-/// How far back a number is a sign that the board started anew, rather than late or doubled.
+/// A number that is lower by at least this much means that the board restarted. A smaller decrease
+/// means a late or a repeated frame.
 const LATE: f64 = 64.0;
 
 impl Decoder {
-    /// For a sensor of so many taxels.
+    /// A decoder for a sensor with `n_taxels` taxels.
     ///
     /// # Panics
-    /// If the description has another number of pressures: compare [`Description::n_pressures`] before.
+    /// The description has another number of pressures: check [`Description::n_pressures`] first.
     #[must_use]
     pub fn new(description: &Description, n_taxels: usize) -> Self {
         assert_eq!(
@@ -65,13 +67,13 @@ impl Decoder {
         }
     }
 
-    /// What was on the line so far.
+    /// Counts of everything on the line so far.
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// Takes bytes, in pieces of any size, and says what is on the line.
+    /// Takes bytes, in pieces of any size, and calls `say` for everything that they contain.
     pub fn push(&mut self, bytes: &[u8], say: &mut dyn FnMut(Heard)) {
         match (self.description.form, self.description.binary.framing) {
             (Form::Binary, Framing::Sync) => {
@@ -83,7 +85,7 @@ impl Decoder {
         }
     }
 
-    /// Cuts at an end, and bounds what does not end.
+    /// Splits at an end byte, and limits the length of pieces without an end.
     fn split(&mut self, bytes: &[u8], end: u8, say: &mut dyn FnMut(Heard)) {
         for byte in bytes {
             if *byte == end {
@@ -103,10 +105,10 @@ impl Decoder {
         }
     }
 
-    /// The most bytes that a piece may have.
+    /// The largest length of a piece, bytes.
     fn longest(&self) -> usize {
         match self.description.form {
-            // The stuffing adds one byte for 254, and one.
+            // Stuffing adds one byte for each 254, and one more.
             Form::Binary => packet::len(&self.description) * 255 / 254 + 2,
             _ => self.description.text.longest,
         }
@@ -136,10 +138,10 @@ impl Decoder {
         }
     }
 
-    /// A line of a frame that has several, and ends with an empty one.
+    /// Takes a line of a frame that has several lines and ends with an empty one.
     fn take_line_of(&mut self, lines: usize, line: &str, say: &mut dyn FnMut(Heard)) {
         if !line.is_empty() {
-            // More lines than there can be are torn, however many.
+            // A frame with too many lines is torn, however many there are.
             self.n_lines = (self.n_lines + 1).min(lines + 1);
             if self.n_lines <= lines {
                 self.lines_under_way.push_str(line);
@@ -166,7 +168,8 @@ impl Decoder {
     fn take_packets(&mut self, say: &mut dyn FnMut(Heard)) {
         let sync = self.description.binary.sync.clone();
         let whole = sync.len() + packet::len(&self.description);
-        // Without a checksum, what tells a packet from such bytes inside of one, and a whole one from a torn one, is that the next begins right behind.
+        // Without a checksum, the next packet has to begin directly after this one. Otherwise the
+        // bytes may be inside of a packet, or the packet may be torn.
         let has_checksum = self.description.binary.checksum.is_some();
         let behind = if has_checksum { 0 } else { sync.len() };
         let mut at = 0;
@@ -218,7 +221,7 @@ impl Decoder {
         }
     }
 
-    /// The frame of the row that was read, after the ones before it.
+    /// The frame of the row that was read, given the frames before it.
     fn place(&mut self) -> Result<LineFrame, Passed> {
         let (numbered, timed) = (self.description.has_sequence(), self.description.has_time());
         if numbered && self.row.sequence.is_none() || timed && self.row.time.is_none() {
@@ -231,7 +234,8 @@ impl Decoder {
         match step {
             Some(Step::On(by)) => lost_before = (by as u64).saturating_sub(1),
             Some(Step::Same) => return Err(Passed::Doubled),
-            // One that is missing is late; one that was there is doubled. What goes back further is a board that starts anew.
+            // A missing frame arrives late; a frame that had arrived is repeated. A larger decrease
+            // is a restart of the board.
             Some(Step::Back(by)) if by < LATE => {
                 return Err(if self.recent >> by as u32 & 1 == 0 {
                     Passed::Late
@@ -242,7 +246,7 @@ impl Decoder {
             Some(Step::Back(_)) => is_restarted = true,
             Some(Step::First) => {}
             None => match time.map(|(_, (step, _))| step) {
-                // A clock of ms may stand still from one frame to the next.
+                // A clock in ms may have the same value in two frames.
                 Some(Step::Same) if self.row == self.last => return Err(Passed::Doubled),
                 Some(Step::Back(_)) => is_restarted = true,
                 Some(Step::On(by)) => lost_before = self.missing(by),
@@ -275,7 +279,8 @@ impl Decoder {
         })
     }
 
-    /// Frames that are missing where one is so much later than the one before, in the clock's unit.
+    /// Number of missing frames if a frame is later than the one before by `later`, in the clock's
+    /// unit.
     fn missing(&self, later: f64) -> u64 {
         let Some(rate_hz) = self.description.rate_hz else {
             return 0;

@@ -1,4 +1,4 @@
-//! How a microcontroller sends its readings: one TOML file.
+//! The description of how a microcontroller sends its readings, as a TOML file.
 
 use std::collections::BTreeMap;
 
@@ -9,48 +9,51 @@ use crate::checksum::Checksum;
 use crate::field::{Field, Meaning};
 use crate::unit::{PressureUnit, TimeUnit};
 
-/// How frames stand on a line.
+/// How frames are sent over a line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
     /// Text, JSON or packets.
     pub form: Form,
-    /// What stands where, from left to right; not for JSON.
+    /// The fields of a line or a packet, from left to right; not for JSON.
     #[serde(default)]
     pub fields: Vec<Field>,
-    /// Of JSON: under which key what stands. A key whose value is a list has its numbers in order; a pressure may have a key for each taxel.
+    /// For JSON: the field for each key. A key with a list has its numbers in order; pressures may
+    /// have a key for each taxel.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub keys: BTreeMap<String, Field>,
-    /// What text looks like.
+    /// The format of text.
     #[serde(default)]
     pub text: Text,
-    /// What packets look like.
+    /// The format of packets.
     #[serde(default)]
     pub binary: Binary,
     /// The clock of the microcontroller.
     #[serde(default)]
     pub time: Time,
-    /// Where the frame's number begins anew: left out, at 2³².
+    /// The value at which the frame number rolls over to 0. Default 2³².
     #[serde(default = "two_to_32")]
     pub sequence_wraps_at: f64,
-    /// What pressures stand for.
+    /// The scale of pressures.
     #[serde(default)]
     pub pressure: Pressure,
-    /// What temperatures stand for.
+    /// The scale of temperatures.
     #[serde(default)]
     pub temperature: Temperature,
-    /// Which taxel each pressure is, from 0, in the order of the fields: left out, the order of the sensor's taxels.
+    /// The index of the taxel of each pressure, from 0, in the order of the fields. Default: the
+    /// order of the sensor's taxels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_order: Option<Vec<usize>>,
-    /// Frames a second; a time that is further from the one before says that frames are missing. Left out: only numbers of frames say so.
+    /// Frame rate, Hz. A longer time between two frames then means that frames are missing. If left
+    /// out, only frame numbers show missing frames.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_hz: Option<f64>,
-    /// The port that it comes through.
+    /// The serial port.
     #[serde(default)]
     pub serial: Serial,
 }
 
-/// What frames are made of.
+/// The kind of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Form {
@@ -62,61 +65,63 @@ pub enum Form {
     Binary,
 }
 
-/// What text looks like.
+/// The format of text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Text {
-    /// What stands between numbers: a character, or `blank` for any number of blanks and tabs.
+    /// The separator of numbers: a character, or `blank` for any number of blanks and tabs.
     pub separator: String,
-    /// What a line of readings begins with; others are passed over.
+    /// The beginning of a line of readings; other lines are passed over.
     pub prefix: String,
-    /// Characters that count as nothing, such as brackets.
+    /// Characters that are ignored, such as brackets.
     pub strip: String,
-    /// What a comment begins with.
+    /// The beginning of a comment.
     pub comment: String,
-    /// What stands for a reading that is missing, besides nothing and `nan`.
+    /// Texts for a missing reading, in addition to an empty text and `nan`.
     pub missing: Vec<String>,
-    /// The checksum of a line, in hexadecimal digits behind a `*` at its end, of all that stands before that.
+    /// The checksum of a line: hexadecimal digits after a `*` at its end, computed over everything
+    /// before the `*`.
     pub checksum: Option<Checksum>,
-    /// Lines of a frame, ended by an empty line: left out, one.
+    /// Number of lines of a frame, if an empty line ends each frame. Default 1.
     pub lines: usize,
-    /// The most bytes that a line may have.
+    /// Largest length of a line, bytes.
     pub longest: usize,
 }
 
-/// What packets look like.
+/// The format of packets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Binary {
-    /// What tells where a packet begins and ends.
+    /// How the beginning and end of a packet are marked.
     pub framing: Framing,
-    /// Bytes that a packet begins with, not among its fields; for `framing = "sync"`.
+    /// Bytes at the beginning of a packet, before its fields; for `framing = "sync"`.
     pub sync: Vec<u8>,
-    /// Which byte of a number comes first.
+    /// The byte order of numbers.
     pub order: ByteOrder,
-    /// A checksum behind the fields, of the fields alone, in the order of bytes of its numbers.
+    /// The checksum after the fields, computed over the fields only, in the byte order of numbers.
     pub checksum: Option<Checksum>,
 }
 
-/// What tells where a packet begins.
+/// How the beginning of a packet is marked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Framing {
-    /// Bytes that may occur inside as well. Without a checksum a packet counts once the next one begins right behind it: a frame later.
+    /// By the bytes of `sync`, which may also occur inside. Without a checksum a packet is accepted
+    /// only when the next one begins directly after it, which is a frame later.
     #[default]
     Sync,
-    /// Consistent overhead byte stuffing: zeros between packets and nowhere else.
+    /// By consistent overhead byte stuffing (COBS): zeros occur between packets only.
     Cobs,
 }
 
-/// Which byte of a number comes first.
+/// The byte order of numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ByteOrder {
-    /// The least significant.
+    /// Least significant byte first.
     #[default]
     Little,
-    /// The most significant.
+    /// Most significant byte first.
     Big,
 }
 
@@ -124,46 +129,46 @@ pub enum ByteOrder {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Time {
-    /// Its unit.
+    /// The unit of its time.
     pub unit: TimeUnit,
-    /// Where it begins anew, in its unit: left out, at 2³² of ms and µs.
+    /// The value at which it rolls over to 0, in its unit. Default 2³² for ms and µs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wraps_at: Option<f64>,
 }
 
-/// What pressures stand for: `gain · number + offset`, in the unit.
+/// The scale of pressures: `gain · number + offset`, in the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Pressure {
-    /// The unit; of counts, what `gain` and `offset` make of them is kPa.
+    /// The unit. For counts, `gain` and `offset` convert to kPa.
     pub unit: PressureUnit,
-    /// Units of a number.
+    /// Units per number.
     pub gain: f64,
-    /// Units at zero.
+    /// Pressure at the number 0, in units.
     pub offset: f64,
 }
 
-/// What temperatures stand for: `gain · number + offset`, °C.
+/// The scale of temperatures: `gain · number + offset`, °C.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Temperature {
-    /// °C of a number.
+    /// °C per number.
     pub gain: f64,
-    /// °C at zero.
+    /// Temperature at the number 0, °C.
     pub offset: f64,
 }
 
-/// The port that a line comes through.
+/// The serial port.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Serial {
-    /// Bits a second.
+    /// Baud rate, bits per second.
     pub baud: u32,
-    /// Whether to set DTR when opening it: many boards start anew then.
+    /// Whether DTR is set when the port is opened. Many boards restart then.
     pub dtr: bool,
-    /// What to send first, such as a command to start.
+    /// Text to send first, such as a start command.
     pub send: String,
-    /// How long to wait before that, for a board that starts anew, s.
+    /// Wait before that text is sent, for a board that restarts, s.
     pub wait_s: f64,
 }
 
@@ -237,10 +242,10 @@ const fn two_to_32() -> f64 {
 }
 
 impl Description {
-    /// Reads a description; `file` names it in errors.
+    /// Reads a description. `file` names it in errors.
     ///
     /// # Errors
-    /// What is wrong with which field, in which line.
+    /// A field is wrong; the error names its line.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         Self::checked(twintac_config::parse(file, text)?)
     }
@@ -248,7 +253,7 @@ impl Description {
     /// Reads a description from a file.
     ///
     /// # Errors
-    /// A file that cannot be read; what is wrong with which field, in which line.
+    /// The file cannot be read, or a field is wrong; the error names its line.
     pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self, ConfigError> {
         Self::checked(twintac_config::read(path)?)
     }
@@ -260,7 +265,7 @@ impl Description {
         }
     }
 
-    /// The fields, in whichever form.
+    /// The fields, for every form.
     pub(crate) fn all_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().chain(self.keys.values())
     }
@@ -270,18 +275,18 @@ impl Description {
         alike.map(|field| field.repeats).sum()
     }
 
-    /// Pressures of a frame: as many as the sensor must have taxels.
+    /// Number of pressures in a frame; the sensor must have as many taxels.
     #[must_use]
     pub fn n_pressures(&self) -> usize {
         self.count(Meaning::Pressure)
     }
 
-    /// Whether frames say when they were read.
+    /// Whether frames contain the time at which they were read.
     pub(crate) fn has_time(&self) -> bool {
         self.count(Meaning::Time) > 0
     }
 
-    /// Whether frames have numbers, which alone say for sure that none is missing.
+    /// Whether frames contain numbers. Only these show for certain that no frame is missing.
     pub(crate) fn has_sequence(&self) -> bool {
         self.count(Meaning::Sequence) > 0
     }
@@ -293,13 +298,20 @@ impl Description {
     fn wrong_fields(&self) -> Option<(&'static str, String, &'static str)> {
         let is_json = self.form == Form::Json;
         if is_json && (self.keys.is_empty() || !self.fields.is_empty()) {
-            let hint =
-                "say under `keys` which key has what: `keys.p = \"pressure * 8\"`, and give no `fields`";
-            return Some(("keys", "are what JSON is read by".to_owned(), hint));
+            let hint = "give the meaning of each key: `keys.p = \"pressure * 8\"`";
+            return Some((
+                "keys",
+                "are required for JSON, and `fields` are not allowed".to_owned(),
+                hint,
+            ));
         }
         if !is_json && (self.fields.is_empty() || !self.keys.is_empty()) {
-            let hint = "say what stands where: `fields = [\"time\", \"pressure * 8\"]`, and give no `keys`";
-            return Some(("fields", "are what this form is read by".to_owned(), hint));
+            let hint = "give the meaning of each field: `fields = [\"time\", \"pressure * 8\"]`";
+            return Some((
+                "fields",
+                "are required for this form, and `keys` are not allowed".to_owned(),
+                hint,
+            ));
         }
         let is_typed = |field: &&Field| field.number.is_some() != (self.form == Form::Binary);
         if let Some(field) = self.all_fields().find(is_typed) {
@@ -320,7 +332,7 @@ impl Description {
             return Some((
                 place,
                 "have no pressure".to_owned(),
-                "say where the taxels' pressures stand: `pressure * 8`",
+                "say where the taxels' pressures are: `pressure * 8`",
             ));
         }
         for meaning in [Meaning::Time, Meaning::Sequence] {
@@ -395,11 +407,11 @@ impl Description {
             && self.pressure.gain == 1.0
             && self.pressure.offset == 0.0
         {
-            let problem = "stands without a gain".to_owned();
+            let problem = "is given without a gain".to_owned();
             return Some((
                 "pressure.unit",
                 problem,
-                "say with `pressure.gain` and `pressure.offset` what kPa counts are",
+                "give `pressure.gain` and `pressure.offset`, which convert counts to kPa",
             ));
         }
         if self.text.separator.chars().count() != 1 && self.text.separator != "blank" {

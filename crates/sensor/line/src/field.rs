@@ -1,27 +1,27 @@
-//! What stands where on a line, or in a packet.
+//! Fields of a line or a packet.
 
 use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// What a number means.
+/// The meaning of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
     /// A taxel's pressure, in the order of the sensor's taxels.
     Pressure,
-    /// Temperature: of each taxel in turn, or one of all.
+    /// Temperature: one for each taxel in turn, or one for all.
     Temperature,
     /// The time at which the taxels were read.
     Time,
     /// The frame's number.
     Sequence,
-    /// Why a taxel has no reading, of each taxel in turn: 0 if it has one.
+    /// Fault code of each taxel in turn: 0 if it has a reading.
     Fault,
     /// Something else.
     Ignored,
 }
 
-/// How a number stands in a packet.
+/// The type of a number in a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names say it
 pub enum Number {
@@ -53,7 +53,7 @@ impl Number {
         ("f64", Self::F64),
     ];
 
-    /// Its bytes.
+    /// Its length, bytes.
     #[must_use]
     pub const fn bytes(self) -> usize {
         match self {
@@ -65,7 +65,7 @@ impl Number {
         }
     }
 
-    /// The number in so many bytes, the least significant first.
+    /// The number in these bytes, least significant byte first.
     pub(crate) fn read(self, bytes: &[u8]) -> f64 {
         let mut whole = [0; 8];
         whole[..bytes.len()].copy_from_slice(bytes);
@@ -81,18 +81,19 @@ impl Number {
     }
 }
 
-/// Numbers of one meaning, one after the other: `time`, `pressure * 8`, and in a packet `u32 time`, `i16 pressure * 8`.
+/// Consecutive numbers of one meaning: `time`, `pressure * 8`, and in a packet `u32 time`,
+/// `i16 pressure * 8`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// How they stand in a packet; `None` in text.
+    /// Their type in a packet; `None` in text.
     pub number: Option<Number>,
-    /// What they mean.
+    /// Their meaning.
     pub meaning: Meaning,
     /// How many there are.
     pub repeats: usize,
 }
 
-/// The most numbers that a field may have.
+/// Largest number of numbers in a field.
 const MOST_REPEATS: usize = 4096;
 
 impl Field {
@@ -113,7 +114,7 @@ impl Field {
                 let (_, number) = known.ok_or_else(|| {
                     let names: Vec<&str> = Number::ALL.iter().map(|(name, _)| *name).collect();
                     format!(
-                        "`{text}`: `{first}` is no type of a number; known are {}",
+                        "`{text}`: `{first}` is not a type of a number; known are {}",
                         names.join(", ")
                     )
                 })?;
@@ -129,7 +130,7 @@ impl Field {
             "ignored" => Meaning::Ignored,
             other => {
                 return Err(format!(
-                    "`{text}`: `{other}` is no meaning; known are pressure, temperature, time, sequence, fault and ignored"
+                    "`{text}`: `{other}` is not a known meaning; known are pressure, temperature, time, sequence, fault and ignored"
                 ));
             }
         };

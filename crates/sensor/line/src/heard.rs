@@ -1,8 +1,8 @@
-//! What was on a line.
+//! What a line contained.
 
 use crate::row::LineFrame;
 
-/// What was on the line.
+/// A frame, or something else on the line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Heard {
     /// A frame.
@@ -11,18 +11,19 @@ pub enum Heard {
     Passed(Passed),
 }
 
-/// What is no frame, and is passed over.
+/// Something on the line that is not a frame, and is passed over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passed {
     /// A comment, or an empty line.
     Comment,
-    /// Text without readings: what a board says when it starts, its header, a console's remarks.
+    /// Text without readings, such as a board's start message, a header, or a console's output.
     Text,
-    /// A line or packet with too few numbers or too many, or with something that is none: its frame is lost.
+    /// A line or packet with too few or too many numbers, or with something that is not a number.
+    /// Its frame is lost.
     Torn,
     /// Its checksum is wrong: its frame is lost.
     Checksum,
-    /// A line that does not end, or bytes that no packet begins with.
+    /// A line without an end, or bytes with which no packet begins.
     Endless,
     /// A frame that came before.
     Doubled,
@@ -31,7 +32,8 @@ pub enum Passed {
 }
 
 impl Passed {
-    /// What a line is that cannot be read: text, unless half of it are digits.
+    /// The kind of a line that cannot be read: text, unless at least a third of its bytes are
+    /// digits.
     pub(crate) fn of_nothing(line: &str) -> Self {
         if line.is_empty() {
             return Self::Comment;
@@ -45,28 +47,28 @@ impl Passed {
     }
 }
 
-/// What was on the line so far, by kind.
+/// Counts of everything on a line so far, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Frames.
     pub frames: u64,
-    /// Frames that are missing, by their numbers or by their times.
+    /// Missing frames, found from frame numbers or times.
     pub lost: u64,
     /// Comments and empty lines.
     pub comments: u64,
     /// Lines of text without readings.
     pub text: u64,
-    /// Lines or packets that were torn.
+    /// Torn lines or packets.
     pub torn: u64,
-    /// Those whose checksum is wrong.
+    /// Lines or packets with a wrong checksum.
     pub checksum: u64,
-    /// Lines that did not end, and bytes between packets.
+    /// Lines without an end, and runs of bytes between packets.
     pub endless: u64,
-    /// Frames that came twice.
+    /// Repeated frames.
     pub doubled: u64,
-    /// Frames that came late.
+    /// Late frames.
     pub late: u64,
-    /// Times that the board started anew.
+    /// Restarts of the board.
     pub restarts: u64,
 }
 
@@ -83,7 +85,7 @@ impl Tally {
         } += 1;
     }
 
-    /// What was on the line besides frames, how often each; empty if all was well.
+    /// Counts of everything besides frames, as texts. Empty if there was nothing else.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let kinds = [
@@ -91,15 +93,17 @@ impl Tally {
             (self.torn, "torn lines"),
             (self.checksum, "lines with a wrong checksum"),
             (self.endless, "long stretches without a line as described"),
-            (self.doubled, "frames that came twice"),
-            (self.late, "frames that came late, and were left out"),
+            (self.doubled, "frames that were received twice"),
+            (self.late, "frames that were received late and left out"),
             (self.restarts, "restarts of the board"),
         ];
         let some = kinds.into_iter().filter(|(n, _)| *n > 0);
         let mut remarks: Vec<String> = some.map(|(n, what)| format!("{what}: {n}")).collect();
         let others = self.comments + self.text;
         if self.frames == 0 && others > 0 {
-            remarks.push(format!("{others} lines came, and none has readings as described"));
+            remarks.push(format!(
+                "{others} lines were received, none with readings as described"
+            ));
         }
         remarks
     }

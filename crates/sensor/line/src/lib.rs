@@ -1,8 +1,10 @@
-//! Frames of taxels out of a line's bytes: text, JSON or packets, as a description says.
+//! Decodes frames of taxels from the bytes of a line: text, JSON or packets, in a format that a
+//! file describes.
 //!
-//! A [`Description`] is a TOML file that says how a microcontroller sends its readings. A [`Decoder`] takes the bytes as they come, in pieces of
-//! any size, and gives [`Heard`]: frames, and what else was on the line. Nothing is lost without a word: what is no frame is counted by its kind
-//! ([`Passed`]), and frames say how many are missing before them. Nothing here opens a port.
+//! Input is a [`Description`], a TOML file that says how a microcontroller sends its readings, and
+//! the bytes of the line. A [`Decoder`] takes the bytes as they arrive, in pieces of any size.
+//! Output is [`Heard`]: frames ([`LineFrame`]), and everything else on the line. Times are in s,
+//! pressures in kPa, temperatures in °C.
 //!
 //! ```
 //! use twintac_line::{Decoder, Description, Heard};
@@ -28,7 +30,18 @@
 //! # Ok::<(), twintac_config::ConfigError>(())
 //! ```
 //!
-//! Times are in s, pressures in kPa, temperatures in °C.
+//! # How it works
+//!
+//! Bytes are split at line ends, at zeros (COBS), or at packets that begin with fixed bytes. The
+//! numbers of a line or packet are assigned to their fields and converted to units. Checksums and
+//! the expected number of values detect torn lines.
+//!
+//! Every loss is counted: bytes that are not a frame are counted by kind ([`Passed`], [`Tally`]),
+//! and each frame has the number of missing frames before it, found from frame numbers or times.
+//! Roll-overs of counters are undone. A frame number that falls far back means that the board
+//! restarted; a small decrease means a late or repeated frame.
+//!
+//! The crate opens no port and uses no threads, network or clock. It depends on no sensor.
 
 mod checksum;
 mod counter;

@@ -1,17 +1,17 @@
-//! Numbers out of packets.
+//! Numbers from packets.
 
 use crate::description::{Binary, ByteOrder, Description};
 use crate::heard::Passed;
 use crate::row::Row;
 
-/// Bytes of a packet's fields, and of its checksum.
+/// Length of a packet's fields and its checksum, bytes.
 pub(crate) fn len(description: &Description) -> usize {
     let fields = description.fields.iter();
     let bytes = fields.map(|field| field.repeats * field.number.map_or(0, |number| number.bytes()));
     bytes.sum::<usize>() + description.binary.checksum.map_or(0, |checksum| checksum.bytes())
 }
 
-/// The numbers of a packet, without what frames it.
+/// Reads the numbers of a packet without its framing.
 pub(crate) fn read(description: &Description, packet: &[u8], row: &mut Row) -> Result<(), Passed> {
     if packet.len() != len(description) {
         return Err(Passed::Torn);
@@ -41,7 +41,7 @@ pub(crate) fn read(description: &Description, packet: &[u8], row: &mut Row) -> R
     Ok(())
 }
 
-/// Bytes with the least significant first.
+/// Copies bytes so that the least significant byte is first.
 fn ordered(binary: &Binary, bytes: &[u8], whole: &mut [u8]) {
     let n = bytes.len();
     whole[..n].copy_from_slice(bytes);
@@ -50,7 +50,7 @@ fn ordered(binary: &Binary, bytes: &[u8], whole: &mut [u8]) {
     }
 }
 
-/// A packet out of its stuffing, without the zero behind it. `None`: it is none.
+/// Removes the stuffing of a packet without its final zero. `None` if it is not a stuffed packet.
 pub(crate) fn unstuffed(stuffed: &[u8]) -> Option<Vec<u8>> {
     let mut packet = Vec::with_capacity(stuffed.len());
     let mut rest = stuffed;
@@ -70,7 +70,7 @@ pub(crate) fn unstuffed(stuffed: &[u8]) -> Option<Vec<u8>> {
 mod tests {
     use super::*;
 
-    /// Examples of Cheshire and Baker, Consistent Overhead Byte Stuffing (1999).
+    /// The examples of Cheshire and Baker, Consistent Overhead Byte Stuffing (1999).
     #[test]
     fn stuffing_is_undone() {
         assert_eq!(unstuffed(&[1, 1]), Some(vec![0]));

@@ -1,26 +1,28 @@
-//! The numbers of a frame, and what they mean.
+//! The numbers of a frame and their meaning.
 
 use crate::description::{Description, Pressure};
 use crate::field::Meaning;
 
-/// A frame as it stood on the line.
+/// A frame from a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineFrame {
-    /// Its number, roll-overs undone, if the line numbers its frames.
+    /// Its number with roll-overs undone, if the line numbers its frames.
     pub sequence: Option<u64>,
-    /// When it was read on the microcontroller's clock, s, roll-overs undone, if the line says so.
+    /// Time of reading on the microcontroller's clock, s, with roll-overs undone, if the line
+    /// contains it.
     pub time_s: Option<f64>,
-    /// Pressures of the taxels, kPa; `None` of one that is missing. `[n_taxels]`
+    /// Pressures of the taxels, kPa; `None` if missing. `[n_taxels]`
     pub pressures_kpa: Vec<Option<f64>>,
-    /// Temperatures of the taxels, °C; `None` where there is none. `[n_taxels]`
+    /// Temperatures of the taxels, °C; `None` if missing. `[n_taxels]`
     pub temperatures_c: Vec<Option<f64>>,
-    /// Why taxels have no reading, as numbers of the board's: 0 of one that has one, `None` where the line does not say. `[n_taxels]`
+    /// Fault codes of the board for each taxel: 0 if it has a reading, `None` if the line does not
+    /// contain codes. `[n_taxels]`
     pub faults: Vec<Option<u8>>,
-    /// Frames that are missing between the one before and this one.
+    /// Number of missing frames between the one before and this one.
     pub lost_before: u64,
 }
 
-/// The numbers of a frame as they stood.
+/// The numbers of a frame, as sent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Row {
     pub(crate) time: Option<f64>,
@@ -50,7 +52,8 @@ impl Row {
         self.faults.clear();
     }
 
-    /// Pressures of the taxels, kPa, in their order. One that has a fault has none, whatever number stands there.
+    /// Pressures of the taxels, kPa, in the sensor's order. A taxel with a fault has none, whatever
+    /// number was sent.
     pub(crate) fn pressures_kpa(&self, description: &Description) -> Vec<Option<f64>> {
         let Pressure { unit, gain, offset } = description.pressure;
         let kpa = |number: f64| unit.kilopascals() * (gain * number + offset);
@@ -61,12 +64,12 @@ impl Row {
         pressures.into_iter().zip(faults).map(sound).collect()
     }
 
-    /// Why taxels have no reading, in their order.
+    /// Fault codes of the taxels, in the sensor's order.
     pub(crate) fn faults(&self, description: &Description) -> Vec<Option<u8>> {
         if self.faults.is_empty() {
             return vec![None; self.pressures.len()];
         }
-        // A number that is none of a fault is one nevertheless.
+        // A number that is no valid code also counts as a fault.
         let number = |number: f64| {
             if number == 0.0 {
                 0
@@ -77,7 +80,7 @@ impl Row {
         in_order(description, &self.faults, number)
     }
 
-    /// Temperatures of the taxels, °C, in their order.
+    /// Temperatures of the taxels, °C, in the sensor's order.
     pub(crate) fn temperatures_c(&self, description: &Description) -> Vec<Option<f64>> {
         let n = self.pressures.len();
         let celsius = |number: f64| description.temperature.gain * number + description.temperature.offset;

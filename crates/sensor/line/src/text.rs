@@ -1,4 +1,4 @@
-//! Numbers out of a line of text, or of JSON.
+//! Numbers from a line of text or JSON.
 
 use serde_json::Value;
 
@@ -7,11 +7,11 @@ use crate::field::Meaning;
 use crate::heard::Passed;
 use crate::row::Row;
 
-/// The numbers of a line. `None` where a reading is missing.
+/// Reads the numbers of a line; `None` for a missing reading.
 pub(crate) fn read(description: &Description, line: &str, row: &mut Row) -> Result<(), Passed> {
     let (line, comment) = (line.trim(), &description.text.comment);
     if description.form == Form::Text && !comment.is_empty() && line.starts_with(comment) {
-        return Err(Passed::Comment); // which has no checksum
+        return Err(Passed::Comment); // comments have no checksum
     }
     let line = whole(description, line)?;
     match description.form {
@@ -20,7 +20,7 @@ pub(crate) fn read(description: &Description, line: &str, row: &mut Row) -> Resu
     }
 }
 
-/// A line without its checksum, if that is right.
+/// A line without its checksum, if the checksum is correct.
 fn whole<'a>(description: &Description, line: &'a str) -> Result<&'a str, Passed> {
     let Some(checksum) = description.text.checksum else {
         return Ok(line);
@@ -55,7 +55,7 @@ fn read_numbers(description: &Description, line: &str, row: &mut Row) -> Result<
             row.push(field.meaning, number(description, cell, line)?);
         }
     }
-    // A separator at the end is no further number.
+    // A separator at the end adds no number.
     match cells.all(str::is_empty) {
         true => Ok(()),
         false => Err(Passed::of_nothing(line)),

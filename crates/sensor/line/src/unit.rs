@@ -1,4 +1,4 @@
-//! Units that lines come in.
+//! Units on a line.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 pub enum TimeUnit {
     /// Seconds.
     S,
-    /// Milliseconds: Arduino's `millis()`.
+    /// Milliseconds, as from Arduino's `millis()`.
     Ms,
-    /// Microseconds: Arduino's `micros()`.
+    /// Microseconds, as from Arduino's `micros()`.
     Us,
     /// Nanoseconds.
     Ns,
 }
 
 impl TimeUnit {
-    /// How many s it is.
+    /// The unit in s.
     pub(crate) const fn seconds(self) -> f64 {
         match self {
             Self::S => 1.0,
@@ -27,7 +27,8 @@ impl TimeUnit {
         }
     }
 
-    /// Where a counter of it begins anew, if nothing else is said: at 2³², as a microcontroller's do.
+    /// The default value at which a counter in this unit rolls over: 2³² for ms and µs, as on a
+    /// microcontroller.
     pub(crate) const fn usual_wrap(self) -> Option<f64> {
         match self {
             Self::Ms | Self::Us => Some(4_294_967_296.0),
@@ -53,13 +54,13 @@ pub enum PressureUnit {
     /// Pounds per square inch.
     #[serde(rename = "psi")]
     Psi,
-    /// Counts of a converter: `gain` and `offset` make kPa of them.
+    /// Counts of a converter; `gain` and `offset` convert them to kPa.
     #[serde(rename = "counts")]
     Counts,
 }
 
 impl PressureUnit {
-    /// How many kPa it is; 1 of counts.
+    /// The unit in kPa; 1 for counts.
     pub(crate) const fn kilopascals(self) -> f64 {
         match self {
             Self::Pa => 1e-3,

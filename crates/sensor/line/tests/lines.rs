@@ -1,4 +1,4 @@
-//! Lines as boards send them, whole, torn, doubled, late and among other text.
+//! Lines as boards send them: whole, torn, repeated, late and among other text.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -252,10 +252,10 @@ fn a_line_that_never_ends_is_bounded() {
 #[test]
 fn wrong_descriptions_name_the_field() {
     for (text, expected) in [
-        ("form = \"text\"", "`fields` are what this form is read by"),
+        ("form = \"text\"", "`fields` are required for this form"),
         (
             "form = \"json\"\nfields = [\"pressure\"]",
-            "`keys` are what JSON is read by",
+            "`keys` are required for JSON",
         ),
         (
             "form = \"text\"\nfields = [\"u8 pressure\"]",
@@ -283,7 +283,7 @@ fn wrong_descriptions_name_the_field() {
         ),
         (
             "form = \"text\"\nfields = [\"pressure\"]\npressure.unit = \"counts\"",
-            "`pressure.unit` stands without a gain",
+            "`pressure.unit` is given without a gain",
         ),
         (
             "form = \"text\"\nfields = [\"pressure\"]\npressure.gain = 0.0",
@@ -303,7 +303,7 @@ fn wrong_descriptions_name_the_field() {
         ),
         (
             "form = \"text\"\nfields = [\"presure\"]",
-            "`presure` is no meaning",
+            "`presure` is not a known meaning",
         ),
         (
             "form = \"text\"\nfields = [\"pressure\"]\nrate_hz = -1",
@@ -316,7 +316,7 @@ fn wrong_descriptions_name_the_field() {
     }
 }
 
-/// A frame's line, with number and checksum. A checksum of 8 bits would take one of 256 broken lines for a whole one.
+/// A frame's line with number and checksum. An 8-bit checksum would accept one of 256 broken lines.
 fn line(sequence: u64) -> String {
     let body = format!("{sequence},{},{}", 1000 + sequence, 2000 + 3 * sequence);
     format!("{body}*{:08x}\n", Checksum::Crc32.of(body.as_bytes()))
@@ -350,7 +350,8 @@ fn mishap() -> impl Strategy<Value = Mishap> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Whatever happens to lines that are numbered and have a checksum: every frame is one that was sent, and each that is not there is counted.
+    /// For any damage to lines with numbers and checksums: every frame that is decoded was sent,
+    /// and every missing frame is counted.
     #[test]
     fn no_loss_is_unmarked(mishaps in prop::collection::vec(mishap(), 1..200), pieces in prop::collection::vec(1..60_usize, 1..20)) {
         let description = described(
@@ -381,7 +382,7 @@ proptest! {
                 bytes.extend(late.bytes());
             }
         }
-        // Two whole lines at the end: the first may be torn by what is before it.
+        // Two whole lines at the end, because the first may be torn by the bytes before it.
         bytes.extend(line(n_sent).bytes().chain(line(n_sent + 1).bytes()));
         n_sent += 2;
         let mut decoder = Decoder::new(&description, 2);
@@ -404,7 +405,7 @@ proptest! {
         prop_assert_eq!(tally.restarts, 0);
     }
 
-    /// Any bytes are survived, in whatever form, and no more is kept of them than a frame needs.
+    /// Any bytes are handled, in every form, and no more of them is stored than a frame needs.
     #[test]
     fn any_bytes_are_survived(pieces in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..200), 0..40), form in 0..4_usize) {
         let description = described([

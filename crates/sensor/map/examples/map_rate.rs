@@ -1,6 +1,7 @@
-//! How many pressure maps a second: `cargo run --release -p twintac-map --example map_rate`.
+//! Pressure maps per second: `cargo run --release -p twintac-map --example map_rate`.
 //!
-//! Eight taxels on 64 × 128 cells, drawn anew each time and from prepared shares, in one run on one core.
+//! Eight taxels on 64 × 128 cells, each map solved anew or computed from a prepared map, in one run
+//! on one core.
 
 #![allow(clippy::print_stdout)] // its results
 
@@ -59,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// How often a second something can be done with ever new readings.
+/// How often per second something can be computed from new readings.
 fn rate_hz(mut make: impl FnMut(&[f64]) -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let (begin, mut count) = (Instant::now(), 0_u32);
     while begin.elapsed() < LONG_ENOUGH {

@@ -1,23 +1,25 @@
-//! Why there is no map.
+//! Errors of pressure maps.
 
 /// Why a pressure map could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// Two inputs that belong together differ in length, or a setting is out of its range.
+    /// Two inputs have different lengths, or a setting is out of its range.
     #[error("{what}: expected {expected}, found {found}")]
     Input {
-        /// The input that is wrong.
+        /// The wrong input.
         what: &'static str,
-        /// What it should have been.
+        /// The expected value.
         expected: String,
-        /// What it was.
+        /// The value found.
         found: String,
     },
     /// The interpolation through the taxels has no unique solution.
-    #[error("the pressure map cannot meet the taxels' values: two taxels share a place (pivot {pivot:e})")]
+    #[error(
+        "the pressure map cannot meet the taxels' values: two taxels are at the same location (pivot {pivot:e})"
+    )]
     Singular {
-        /// The pivot that vanished, relative to a diagonal of one.
+        /// The smallest pivot, relative to a diagonal of one.
         pivot: f64,
     },
 }
@@ -34,7 +36,7 @@ pub(crate) fn check_length(
     Err(input(what, &expected, values.len()))
 }
 
-/// Readings are numbers, or missing: NaN.
+/// Checks that readings are finite or missing (NaN).
 pub(crate) fn check_finite_or_missing(above_kpa: &[f64]) -> Result<(), MapError> {
     let infinite = above_kpa.iter().find(|above| above.is_infinite());
     match infinite {

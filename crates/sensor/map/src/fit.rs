@@ -1,4 +1,4 @@
-//! The weights of a map, as a linear function of the readings.
+//! The weights of a map as a linear function of the readings.
 
 use crate::error::input;
 use crate::geometry::{distance_mm, pitch_mm};
@@ -6,20 +6,20 @@ use crate::kernel::{self, Plane};
 use crate::width::leave_one_out_width_mm;
 use crate::{Kernel, MapError, MapSettings, Weights};
 
-/// All that follows from the taxels and the settings alone.
+/// Everything that depends only on the taxels and the settings.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     taxels_mm: Vec<[f64; 2]>,
     kernel: Kernel,
-    /// What distances are counted in.
+    /// The unit of distances: the Gaussian's width, or the taxels' pitch for a thin plate, mm.
     pub(crate) length_mm: f64,
     planes: Vec<Plane>,
-    /// `[weights and planes][taxels]`; `None`: the weights are the readings.
+    /// `[weights and planes][taxels]`. `None`: the weights are the readings.
     solution: Option<Vec<Vec<f64>>>,
 }
 
 impl Fit {
-    /// `fields` are readings above the baseline from which a width is chosen, if none is given.
+    /// If no width is given, it is chosen from `fields`: readings above the baseline, kPa.
     pub(crate) fn new(
         taxels_mm: &[[f64; 2]],
         settings: &MapSettings,
@@ -40,7 +40,7 @@ impl Fit {
                 let what = "weights of a pressure map";
                 return Err(input(
                     what,
-                    "solved ones with a thin plate",
+                    "fitted ones for a thin plate",
                     "the readings themselves",
                 ));
             }
@@ -88,7 +88,7 @@ impl Fit {
         solution.iter().map(product).collect()
     }
 
-    /// The functions' values at a place, in the order of the weights.
+    /// The functions' values at a location, in the order of the weights.
     pub(crate) fn functions(&self, place: [f64; 2]) -> impl Iterator<Item = f64> {
         let kernels = self
             .taxels_mm
@@ -97,7 +97,7 @@ impl Fit {
         kernels.chain(self.planes.iter().map(move |plane| kernel::height(plane, place)))
     }
 
-    /// What a reading of 1 kPa at each taxel alone makes at a place.
+    /// The pressure at a location if one taxel reads 1 kPa and the others 0, for each taxel, kPa.
     pub(crate) fn shares(&self, place: [f64; 2]) -> Vec<f64> {
         let Some(solution) = &self.solution else {
             return self.functions(place).collect();

@@ -1,6 +1,6 @@
-//! Places in the gel's plane.
+//! Positions in the gel's plane.
 
-/// An upright rectangle in the gel's plane, mm.
+/// A rectangle along the axes in the gel's plane, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rectangle {
     /// Corner with the smallest x and y, mm.
@@ -9,7 +9,8 @@ pub struct Rectangle {
     pub max_mm: [f64; 2],
 }
 
-/// The mean distance of a taxel to its nearest neighbour, mm; 8 if there are fewer than two.
+/// The mean distance from a taxel to its nearest neighbour, mm; 8 if there are fewer than two
+/// taxels.
 pub fn pitch_mm(taxels_mm: &[[f64; 2]]) -> f64 {
     const ALONE_MM: f64 = 8.0;
     let nearest = |index: usize| {

@@ -1,4 +1,4 @@
-//! One map.
+//! A single map.
 
 use crate::error::{check_finite_or_missing, check_grid, check_length};
 use crate::fit::Fit;
@@ -12,21 +12,25 @@ pub struct PressureMap {
     pub rectangle: Rectangle,
     /// Columns and rows.
     pub grid: [usize; 2],
-    /// Pressure above the baseline, kPa, `[rows][columns]` flattened, the row of smallest y first. NaN everywhere if no taxel has a reading.
+    /// Pressure above the baseline, kPa, `[rows][columns]` flattened, the row of smallest y first.
+    /// NaN everywhere if no taxel has a reading.
     pub pressure_kpa: Vec<f64>,
 }
 
 /// Interpolates readings over a rectangle; with Gaussians `f(x) = Σᵢ wᵢ exp(-|x - xᵢ|² / 2σ²)`.
 ///
-/// Without load (readings equal to the baseline) the map is zero everywhere. The paper writes the weights as
-/// `λᵢ - p(xᵢ)`; here their sign is turned, so that more pressure is more. A taxel without a reading, NaN, is left out:
-/// the map is that of the other taxels. Of many maps of the same taxels, [`PreparedMap`](crate::PreparedMap) makes each about 90 times as fast (`cargo run --release -p twintac-map --example map_rate`).
+/// Without load (readings equal to the baseline) the map is zero everywhere. The paper writes the
+/// weights as `λᵢ - p(xᵢ)`; here their sign is reversed, so that a larger pressure has a larger
+/// value. A taxel without a reading (NaN) is left out: the map is that of the other taxels. For
+/// many maps of the same taxels, [`PreparedMap`](crate::PreparedMap) computes each about 90 times
+/// as fast (`cargo run --release -p twintac-map --example map_rate`).
 ///
-/// `taxels_mm`, `readings_kpa` and `baseline_kpa` have one entry a taxel.
+/// `taxels_mm`, `readings_kpa` and `baseline_kpa` have one entry for each taxel.
 ///
 /// # Errors
-/// [`MapError::Input`] if lengths differ, a reading is infinite, the grid is empty or a setting is out of its range;
-/// [`MapError::Singular`] if two taxels share a place and the map shall meet both.
+/// [`MapError::Input`] if lengths differ, a reading is infinite, the grid is empty or a setting is
+/// out of its range; [`MapError::Singular`] if two taxels have the same position and the map must
+/// pass through both readings.
 pub fn pressure_map(
     taxels_mm: &[[f64; 2]],
     readings_kpa: &[f64],
@@ -46,7 +50,7 @@ pub fn pressure_map(
     })
 }
 
-/// The map of the taxels that have a reading above the baseline; NaN if none has.
+/// The map of the taxels with a reading above the baseline; NaN if there is none.
 pub(crate) fn through_answers(
     taxels_mm: &[[f64; 2]],
     above_kpa: &[f64],

@@ -1,14 +1,16 @@
-//! The functions that a map is a sum of, and the linear system of their weights.
+//! The radial basis functions of a map, and the linear system of their weights.
 
 use crate::geometry::distance_mm;
 use crate::{Kernel, MapError};
 
-/// Smallest pivot, of a matrix whose entries are of order one.
+/// Smallest pivot of a matrix whose entries are of order one.
 const SMALLEST_PIVOT: f64 = 1e-10;
-/// Spread of the taxels below which they lie on a line, in lengths of the kernel.
+/// If the taxels' spread from a line is smaller than this, they count as lying on a line; in
+/// lengths of the kernel.
 const ON_A_LINE: f64 = 1e-6;
 
-/// The value at a distance of so many lengths: the Gaussian's width, or the pitch, in which a thin plate is well scaled.
+/// The value at a distance in units of the kernel's length: the Gaussian's width, or for a thin
+/// plate the pitch, which scales it well.
 pub(crate) fn value(kernel: Kernel, distance: f64) -> f64 {
     match kernel {
         Kernel::Gaussian => (-0.5 * distance * distance).exp(),
@@ -17,17 +19,18 @@ pub(crate) fn value(kernel: Kernel, distance: f64) -> f64 {
     }
 }
 
-/// A plane `a + b x + c y` of which no bending energy knows.
+/// A plane `a + b x + c y`. It has no bending energy.
 pub(crate) type Plane = [f64; 3];
 
-/// The planes beside the kernels: none for Gaussians; for a thin plate as many as the taxels tell apart, fewer than three on a line.
+/// The planes in addition to the kernels: none for Gaussians. For a thin plate as many as the
+/// taxels determine: fewer than three if they lie on a line.
 pub(crate) fn planes(kernel: Kernel, taxels_mm: &[[f64; 2]], length_mm: f64) -> Vec<Plane> {
     let n = taxels_mm.len() as f64;
     if kernel == Kernel::Gaussian || taxels_mm.is_empty() {
         return Vec::new();
     }
     let mut planes = vec![[1.0, 0.0, 0.0]];
-    // Gram and Schmidt: each coordinate, less what the planes before it say already.
+    // Gram-Schmidt: each coordinate, minus its part in the planes before it.
     for mut plane in [[0.0, 1.0 / length_mm, 0.0], [0.0, 0.0, 1.0 / length_mm]] {
         for known in &planes {
             let product = |one: &Plane, two: &Plane| -> f64 {
@@ -51,7 +54,8 @@ pub(crate) fn height(plane: &Plane, [x, y]: [f64; 2]) -> f64 {
     plane[0] + plane[1] * x + plane[2] * y
 }
 
-/// The system of weights and planes: kernels between the taxels, more by `ridge` on the diagonal, bordered by the planes.
+/// The linear system of weights and planes: kernels between the taxels, with `ridge` added to the
+/// diagonal, bordered by the planes.
 pub(crate) fn system(
     kernel: Kernel,
     taxels_mm: &[[f64; 2]],
@@ -75,7 +79,7 @@ pub(crate) fn system(
         .collect()
 }
 
-/// The inverse of a small matrix, by Gauss and Jordan with row pivots.
+/// The inverse of a small matrix by Gauss-Jordan elimination with row pivots.
 pub(crate) fn inverse(mut matrix: Vec<Vec<f64>>) -> Result<Vec<Vec<f64>>, MapError> {
     let n = matrix.len();
     let mut inverse: Vec<Vec<f64>> = (0..n)

@@ -1,6 +1,13 @@
-//! A continuous pressure map from a few taxels, by radial basis functions (paper, equation 1).
+//! A continuous pressure map from a few taxels, by radial basis functions (equation 1 of the
+//! TwinTac paper, arXiv 2509.10063).
 //!
-//! [`pressure_map`] makes one map. [`PreparedMap`] makes many of the same taxels, each as one weighted sum.
+//! Input is the positions of the taxels in mm and their readings in kPa. Output is a
+//! [`PressureMap`]: the pressure above the baseline, kPa, on a grid over a [`Rectangle`].
+//!
+//! - [`pressure_map`] computes one map.
+//! - [`PreparedMap`] computes many maps of the same taxels, each as one weighted sum.
+//! - [`MapSettings`] sets the grid, the function ([`Kernel`]) and how the weights are found
+//!   ([`Weights`]).
 //!
 //! ```
 //! use twintac_map::{MapSettings, Rectangle, pressure_map};
@@ -12,6 +19,19 @@
 //! assert_eq!(map.pressure_kpa.len(), 32 * 16);
 //! # Ok::<(), twintac_map::MapError>(())
 //! ```
+//!
+//! # How it works
+//!
+//! A map is a sum of one function around each taxel: a Gaussian as in the paper, or a thin plate
+//! (`r² ln r` and a plane). The weights are the readings, as in the paper, or they are solved so
+//! that the map passes through the readings, or they are regularised for noisy readings. A width
+//! that is not given is chosen by leave-one-out cross-validation.
+//!
+//! A map is linear in its readings. [`PreparedMap`] therefore computes the share of each taxel in
+//! each cell once. A taxel without a reading (NaN) is left out.
+//!
+//! The crate depends on nothing that supplies readings: neither drivers, recordings, the emulator
+//! nor simulation.
 
 mod error;
 mod fit;

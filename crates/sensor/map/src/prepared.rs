@@ -6,24 +6,26 @@ use crate::geometry::{Rectangle, cells};
 use crate::interpolate::through_answers;
 use crate::{MapError, MapSettings};
 
-/// A map is linear in its readings: what each taxel adds to each cell, worked out once, so that a map is a sum.
+/// Pressure maps of fixed taxels. A map is linear in its readings, so the share of each taxel in
+/// each cell is computed once, and each map is a weighted sum.
 #[derive(Clone, Debug)]
 pub struct PreparedMap {
     rectangle: Rectangle,
-    /// With the width that was chosen.
+    /// The settings, with the width that was chosen.
     settings: MapSettings,
     taxels_mm: Vec<[f64; 2]>,
     length_mm: f64,
-    /// `[taxels][cells]`: kPa in the cell for 1 kPa at the taxel.
+    /// `[taxels][cells]`: pressure in the cell, kPa, for a reading of 1 kPa at the taxel.
     shares: Vec<Vec<f64>>,
 }
 
 impl PreparedMap {
-    /// Of taxels, over a rectangle. `fields_kpa` are readings above the baseline from which
-    /// the width is chosen by leaving each taxel out in turn, if the settings give none; there may be none.
+    /// Prepares maps of these taxels over a rectangle. If the settings give no width, it is chosen
+    /// by leave-one-out cross-validation on `fields_kpa`: readings above the baseline, one entry
+    /// for each taxel. The list may be empty.
     ///
     /// # Errors
-    /// As [`pressure_map`](crate::pressure_map).
+    /// See [`pressure_map`](crate::pressure_map).
     pub fn new(
         taxels_mm: &[[f64; 2]],
         rectangle: Rectangle,
@@ -62,17 +64,21 @@ impl PreparedMap {
         self.settings.grid
     }
 
-    /// Standard deviation of the Gaussians, given or chosen, mm; the taxels' pitch for a thin plate.
+    /// Standard deviation of the Gaussians, given or chosen, mm. For a thin plate, the taxels'
+    /// pitch.
     #[must_use]
     pub fn width_mm(&self) -> f64 {
         self.length_mm
     }
 
-    /// Fills `pressure_kpa` with a map, `[rows][columns]` flattened as in [`PressureMap`](crate::PressureMap), of one reading above the
-    /// baseline a taxel. A taxel without one, NaN, is left out: the map is then solved anew for the others, with the same width.
+    /// Fills `pressure_kpa` with a map, `[rows][columns]` flattened as in
+    /// [`PressureMap`](crate::PressureMap), from one reading above the baseline for each taxel,
+    /// kPa. A taxel without a reading (NaN) is left out: the map is then solved anew for the
+    /// others, with the same width.
     ///
     /// # Errors
-    /// [`MapError::Input`] if there is not one reading a taxel, or one is infinite; as [`pressure_map`](crate::pressure_map) where some are left out.
+    /// [`MapError::Input`] if the number of readings is not that of the taxels, or one is infinite;
+    /// those of [`pressure_map`](crate::pressure_map) if taxels are left out.
     pub fn fill(&self, above_kpa: &[f64], pressure_kpa: &mut Vec<f64>) -> Result<(), MapError> {
         check_length("readings of a pressure map", above_kpa, &self.taxels_mm)?;
         if above_kpa.iter().any(|above| above.is_nan()) {

@@ -1,4 +1,4 @@
-//! What a map must do.
+//! Properties of maps.
 
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ const TAXELS: [[f64; 2]; 8] = [
     [12.0, 4.0],
 ];
 
-/// A grid of one cell whose centre is the place.
+/// The map's value at a location: a grid of one cell whose centre is there.
 fn at(place: [f64; 2], readings: &[f64], weights: Weights) -> f64 {
     let rectangle = Rectangle {
         min_mm: place.map(|x| x - 1.0),
@@ -56,7 +56,7 @@ proptest! {
 fn the_papers_map_is_the_sum_of_weighted_gaussians() {
     let mut readings = [0.0; 8];
     readings[1] = 100.0;
-    // Pitch 8 mm, so the width is 4 mm: half a pitch away is one standard deviation.
+    // The pitch is 8 mm, so the width is 4 mm, and half a pitch is one standard deviation.
     let expected = 100.0 * (-0.5f64).exp();
     assert!((at([0.0, -4.0], &readings, Weights::Readings) - expected).abs() < 1e-12);
     assert!((at([-4.0, -4.0], &readings, Weights::Readings) - 100.0).abs() < 1e-12);
@@ -178,7 +178,7 @@ fn with(kernel: Kernel, weights: Weights) -> MapSettings {
     }
 }
 
-/// A prepared map at the taxels themselves: cells of which one has its centre there.
+/// A prepared map at the taxels: each one has a cell with its centre there.
 fn at_taxels(taxels_mm: &[[f64; 2]], above_kpa: &[f64], settings: MapSettings) -> Vec<f64> {
     let at = |taxel: &[f64; 2]| {
         let (min_mm, max_mm) = (taxel.map(|x| x - 1.0), taxel.map(|x| x + 1.0));
@@ -225,7 +225,7 @@ proptest! {
 #[test]
 fn a_thin_plate_draws_a_plane_as_a_plane_also_on_a_line() {
     let plane = |[x, y]: [f64; 2]| 3.0 + 0.5 * x - 0.25 * y;
-    let settings = with(Kernel::ThinPlate, Weights::Regularised(10.0)); // what does not bend is not smoothed
+    let settings = with(Kernel::ThinPlate, Weights::Regularised(10.0)); // a plane does not bend, so it is not smoothed
     let row = [[-6.0, -3.0], [-2.0, -1.0], [2.0, 1.0], [6.0, 3.0]];
     for taxels in [&TAXELS[..], &row[..], &row[..2], &row[..1]] {
         let above: Vec<f64> = taxels.iter().map(|&taxel| plane(taxel)).collect();
@@ -261,8 +261,9 @@ fn more_regularisation_is_smoother_and_further_from_the_readings() {
     }
 }
 
-/// A field that is one wide Gaussian: the width of the taxels' own Gaussians has to grow with it, and the chosen one be close to the best
-/// for the field between the taxels, which the choice has not seen.
+/// For a field that is one wide Gaussian, the width of the taxels' Gaussians has to grow with it.
+/// The chosen width has to be close to the best one for the field between the taxels, which the
+/// choice has not seen.
 #[test]
 fn leave_one_out_finds_a_width_for_the_field() {
     let array: Vec<[f64; 2]> = (0..36)

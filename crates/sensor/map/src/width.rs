@@ -1,19 +1,22 @@
-//! The Gaussian's width, chosen by how well each taxel is told by the others.
+//! The Gaussian's width, chosen by leave-one-out cross-validation.
 
 use crate::geometry::{finite_or_zero, pitch_mm};
 use crate::{Kernel, kernel};
 
-/// Widths that are tried, in pitches of the taxels, each 1.12 times the one before. Wider ones leave the weights to rounding.
+/// Widths that are tried, in pitches of the taxels, each 1.12 times the last. With larger widths
+/// the weights are dominated by rounding errors.
 const NARROWEST: f64 = 0.3;
 const STEP: f64 = 1.12;
 const STEPS: i32 = 13;
-/// Width where nothing tells, in pitches.
+/// The width if the fields give no information, in pitches.
 const USUAL: f64 = 0.5;
 
-/// The width of Gaussians, mm, with which the map through all taxels but one tells that one best, summed over the taxels and the fields.
+/// The width of Gaussians, mm, with the smallest leave-one-out error, summed over taxels and
+/// fields.
 ///
-/// A field is one reading above the baseline a taxel, kPa. Leaving one out needs no solve of its own: the miss is `wᵢ / (K⁻¹)ᵢᵢ`
-/// (Rippa 1999). Half the pitch if fields tell nothing: there are none, all are zero, or there are fewer than three taxels.
+/// A field has one reading above the baseline for each taxel, kPa. Leaving one out needs no
+/// solution of its own: its error is `wᵢ / (K⁻¹)ᵢᵢ` (Rippa 1999). The width is half the pitch if
+/// there are no fields, if all are zero, or if there are fewer than three taxels.
 pub(crate) fn leave_one_out_width_mm(taxels_mm: &[[f64; 2]], fields_kpa: &[&[f64]], ridge: f64) -> f64 {
     let pitch_mm = pitch_mm(taxels_mm);
     let is_told = |field: &&&[f64]| {

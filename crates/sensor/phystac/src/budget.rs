@@ -1,11 +1,12 @@
-//! How many frames a second a bus carries.
+//! The frame rate that a bus allows.
 
 use crate::asynch::FRAMES_PER_TEMPERATURE;
 use crate::settings::Settings;
 use crate::wiring::Wired;
 
-/// What a frame costs on the bus: nine clocks a byte, and one each for START, repeated START and STOP. A barometer is asked once whether it has
-/// ended: at the end of its longest conversion it has.
+/// The time that a frame takes on the bus: nine clocks for each byte, and one clock for each START,
+/// repeated START and STOP. It assumes that each barometer is asked once whether its conversion has
+/// ended, because it has after the longest conversion time.
 ///
 /// ```
 /// use phystac::{Budget, Settings};
@@ -16,22 +17,22 @@ use crate::wiring::Wired;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Clocks of a frame, without temperatures that are converted apart.
+    /// Clocks of a frame, without separate temperature conversions.
     frame_clocks: u32,
     /// The longest conversion, µs.
     conversion_us: u32,
-    /// What temperatures cost that are converted apart, in the mean of frames, µs.
+    /// Mean time per frame for separate temperature conversions, µs.
     temperature_us: f32,
-    /// Time of a frame in which each barometer is triggered, awaited and read by itself, µs.
+    /// Time of a frame if each barometer is triggered, awaited and read alone, µs.
     one_by_one_us: f32,
     bus_hz: u32,
 }
 
 impl Budget {
-    /// Address and mask.
+    /// Clocks of a write of the switch's mask: address and mask.
     const OPEN: u32 = 9 * 2 + 2;
 
-    /// Of a sensor on a bus of so many clocks a second; at most 400 000.
+    /// The budget of a sensor on a bus of `bus_hz` clocks per second, at most 400 000.
     #[must_use]
     pub fn new<const N: usize>(settings: &Settings<N>, bus_hz: u32) -> Self {
         let clocks_us = |clocks: u32| 1e6 * clocks as f32 / bus_hz as f32;
@@ -51,7 +52,8 @@ impl Budget {
             };
             let command = 9 * (1 + cost.command) + 2;
             let opening = if wired.behind.is_some() { Self::OPEN } else { 0 };
-            // Commands of a kind are one write, once the channels of every switch are open.
+            // Barometers that take the same command get it in one write, after the channels of
+            // every switch are open.
             let alike = |before: &Wired| {
                 (before.chip, before.address, before.samples) == (wired.chip, wired.address, wired.samples)
             };
@@ -60,7 +62,7 @@ impl Budget {
             } else {
                 0
             };
-            // From one switch to the next, the one before is closed.
+            // Where the switch changes, the channels of the one before are closed first.
             let changes = |before: &Wired| {
                 before.behind.map(|(switch, _)| switch) != wired.behind.map(|(switch, _)| switch)
             };
@@ -88,26 +90,26 @@ impl Budget {
         }
     }
 
-    /// Clocks of a frame, without temperatures that are converted apart.
+    /// Clocks of a frame, without separate temperature conversions.
     #[must_use]
     pub const fn frame_clocks(&self) -> u32 {
         self.frame_clocks
     }
 
-    /// Time of a frame in the mean, µs.
+    /// Mean time of a frame, µs.
     #[must_use]
     pub fn frame_us(&self) -> f32 {
         let clocks_us = 1e6 * self.frame_clocks as f32 / self.bus_hz as f32;
         self.conversion_us as f32 + clocks_us + self.temperature_us
     }
 
-    /// Frames a second, Hz.
+    /// Frame rate, Hz.
     #[must_use]
     pub fn rate_hz(&self) -> f32 {
         1e6 / self.frame_us()
     }
 
-    /// Frames a second if each taxel were triggered, awaited and read by itself, Hz.
+    /// Frame rate if each taxel is triggered, awaited and read alone, Hz.
     #[must_use]
     pub fn one_by_one_hz(&self) -> f32 {
         1e6 / self.one_by_one_us
@@ -120,7 +122,7 @@ mod tests {
 
     #[test]
     fn rates_of_eight_taxels() {
-        // conversion, then with one trigger at 100 and 400 kHz, then one by one
+        // conversion time; then with one trigger for all at 100 and 400 kHz; then one by one
         let table = [
             (2500, [71.92, 185.05], [30.11, 42.91]),
             (6000, [57.47, 112.43], [16.36, 19.49]),

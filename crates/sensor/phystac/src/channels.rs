@@ -1,4 +1,4 @@
-//! A switch's channels and its address.
+//! A switch's channels and address.
 
 use core::fmt;
 use core::ops::BitOr;
@@ -19,7 +19,7 @@ impl Channels {
         Self(mask)
     }
 
-    /// Exactly one channel, 0 to 7; `None` beyond.
+    /// Exactly one channel, 0 to 7. `None` for larger numbers.
     #[must_use]
     pub const fn only(channel: u8) -> Option<Self> {
         if channel < 8 {
@@ -29,7 +29,7 @@ impl Channels {
         }
     }
 
-    /// The byte that the switch is written.
+    /// The byte that is written to the switch.
     #[must_use]
     pub const fn mask(self) -> u8 {
         self.0
@@ -76,7 +76,7 @@ impl SwitchAddress {
         Self(0x70 | (a2 as u8) << 2 | (a1 as u8) << 1 | a0 as u8)
     }
 
-    /// A 7-bit address; `None` if no TCA9548A can have it.
+    /// The switch with this 7-bit address. `None` if no TCA9548A can have it.
     #[must_use]
     pub const fn new(address: u8) -> Option<Self> {
         match address {

@@ -1,10 +1,10 @@
-//! The time that stamps a frame.
+//! The clock that time-stamps frames.
 
 /// A clock that never goes back, such as a timer's counter or a monotonic system clock.
 ///
-/// Any `Fn() -> u64` is one.
+/// Every `Fn() -> u64` is a clock.
 pub trait Clock {
-    /// Time since a moment that stays the same while the clock runs, µs.
+    /// Time since a fixed moment, µs.
     fn now_us(&self) -> u64;
 }
 

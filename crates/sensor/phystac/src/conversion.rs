@@ -1,27 +1,27 @@
-//! From what a barometer counts to what it means.
+//! From the counts of a barometer to a pressure.
 
 use core::fmt;
 
 use crate::fault::Fault;
 
-/// The 24 bits of a pressure register, as they came.
+/// The 24 bits of a pressure register, unchanged.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Counts(u32);
 
 impl Counts {
-    /// From the register's three bytes, the most significant first.
+    /// From the register's three bytes, most significant byte first.
     #[must_use]
     pub const fn from_be_bytes([high, middle, low]: [u8; 3]) -> Self {
         Self(u32::from_be_bytes([0, high, middle, low]))
     }
 
-    /// Read as a number from 0 to 2²⁴ - 1.
+    /// As an unsigned number, 0 to 2²⁴ - 1.
     #[must_use]
     pub const fn unsigned(self) -> u32 {
         self.0
     }
 
-    /// Read as two's complement, from -2²³ to 2²³ - 1.
+    /// As two's complement, -2²³ to 2²³ - 1.
     #[must_use]
     pub const fn signed(self) -> i32 {
         (self.0 << 8).cast_signed() >> 8
@@ -34,30 +34,30 @@ impl fmt::Debug for Counts {
     }
 }
 
-/// What one conversion gave.
+/// The result of one conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// The bits that stand for the pressure, as they came.
+    /// The raw bits of the pressure.
     pub counts: Counts,
-    /// What the chip itself makes of them.
+    /// The pressure that follows from the chip's own calibration, if it has one.
     pub pressure: Pressure,
     /// The chip's temperature, °C.
     pub temperature_c: f32,
 }
 
-/// The pressure that a chip says it felt.
+/// The pressure that a chip reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pressure {
     /// Pa.
     Pascal(f32),
-    /// The chip does not measure that far.
+    /// The pressure is outside the chip's range.
     OutOfRange,
-    /// The chip only counts: a [`Transfer`] says what that stands for.
+    /// The chip only counts: a [`Transfer`] gives the scale.
     Unscaled,
 }
 
 impl Sample {
-    /// Of a chip that knows its scale.
+    /// A sample of a chip whose scale is known.
     pub(crate) fn scaled(counts: Counts, pressure_pa: f32, temperature_c: f32, range_pa: [f32; 2]) -> Self {
         let [lowest_pa, highest_pa] = range_pa;
         Self {
@@ -70,7 +70,7 @@ impl Sample {
         }
     }
 
-    /// Pressure, Pa. `transfer` counts where the chip does not know its scale.
+    /// Pressure, Pa. `transfer` is used only for chips whose scale is unknown.
     ///
     /// # Errors
     /// [`Fault::Saturated`]: the pressure is at an end of the range or beyond.
@@ -83,21 +83,23 @@ impl Sample {
     }
 }
 
-/// What pressure counts stand for: `pressure = pa_per_count · counts + offset_pa`.
+/// The scale of pressure counts: `pressure = pa_per_count · counts + offset_pa`.
 ///
-/// Not the same for all parts that look alike on the bus; [`scale_hint`](crate::scale_hint) finds it in free air.
+/// Parts that look alike on the bus can differ in scale; [`scale_hint`](crate::scale_hint) finds it
+/// in free air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transfer {
     /// Pascal per count.
     pub pa_per_count: f32,
     /// Pressure at 0 counts, Pa.
     pub offset_pa: f32,
-    /// Whether counts are two's complement, as the family's data sheet has it, or run from 0 to 2²⁴ - 1.
+    /// Whether counts are two's complement, as in the family's data sheet, or run from 0 to 2²⁴
+    /// - 1.
     pub signed: bool,
 }
 
 impl Transfer {
-    /// The family's signed transfer without offset: pressure in Pa is `counts / counts_per_pa`.
+    /// The family's signed transfer without offset: the pressure is `counts / counts_per_pa`, Pa.
     #[must_use]
     pub const fn per_pa(counts_per_pa: u16) -> Self {
         Self {
@@ -107,10 +109,11 @@ impl Transfer {
         }
     }
 
-    /// Pressure, Pa. Exact to 24 bits where `pa_per_count` is a power of two and there is no offset.
+    /// Pressure, Pa. Exact to 24 bits if `pa_per_count` is a power of two and the offset is 0.
     ///
     /// # Errors
-    /// [`Fault::Saturated`] for the first and the last count of the range: the pressure is there or beyond.
+    /// [`Fault::Saturated`] for the first and the last count of the range: the pressure is there or
+    /// beyond.
     pub fn pressure_pa(&self, counts: Counts) -> Result<f32, Fault> {
         if self.is_saturated(counts) {
             return Err(Fault::Saturated);
@@ -130,7 +133,7 @@ impl Transfer {
         }
     }
 
-    /// The largest pressure that counts can say, Pa.
+    /// The largest pressure that counts can represent, Pa.
     #[must_use]
     pub const fn full_scale_pa(&self) -> f32 {
         let most = if self.signed { 0x7F_FFFF } else { 0xFF_FFFF };

@@ -1,4 +1,4 @@
-//! What ends an operation.
+//! Errors that end an operation.
 
 use core::fmt;
 
@@ -6,51 +6,54 @@ use embedded_hal::i2c::{self, ErrorKind};
 
 use crate::channels::Channels;
 
-/// Why an operation came to nothing; `E` is the bus's own error.
+/// Why an operation failed. `E` is the error of the bus.
 ///
-/// Of [`PhysTac`](crate::PhysTac), whatever the error, the next call starts from the switch's mask again.
+/// After any error of [`PhysTac`](crate::PhysTac) the next call starts over with the switch's mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error<E> {
-    /// A transaction failed otherwise than by a missing acknowledge. The bus works; trying again may help.
+    /// A transaction failed, and not by a missing acknowledge. The bus works; trying again may
+    /// help.
     Bus(E),
-    /// No transaction goes through any more: free the bus ([`recovery`](crate::recovery)), then try again.
+    /// No transaction succeeds any more: free the bus ([`recovery`](crate::recovery)), then try
+    /// again.
     BusHung {
-        /// The taxel whose channel was open, if it was one alone.
+        /// The taxel whose channel was open, if only one was.
         taxel: Option<usize>,
-        /// What the bus said first.
+        /// The first error that the bus gave.
         source: E,
     },
     /// The switch does not acknowledge its address.
     SwitchMissing,
-    /// The switch has other channels open than it was told: it lost power or was reset.
+    /// The switch has other channels open than were written: it lost power or was reset.
     SwitchReset {
-        /// The channels it was told to open.
+        /// The channels that were written.
         wrote: Channels,
-        /// The channels that it has open.
+        /// The channels that are open.
         found: Channels,
     },
     /// The barometer does not acknowledge its address.
     BarometerMissing,
-    /// Not one barometer takes the trigger: none acknowledges, or all still convert.
+    /// No barometer took the trigger: none acknowledges, or all still convert.
     NotTriggered,
-    /// The conversion did not end in time, or was lost with the part's power.
+    /// The conversion did not end in time, or was lost when the part lost power.
     ConversionStuck,
-    /// Something answers at a barometer's address though all channels are closed: another device on the bus itself, which would speak at the same
-    /// time as the barometers.
+    /// Something answers at a barometer's address while all channels are closed: another device on
+    /// the bus itself. It would answer together with the barometers.
     AddressConflict {
         /// The address.
         address: u8,
     },
-    /// The part that answers is another one: its register of identity does not hold what it should.
+    /// The part at this address is another one: its identity register has another content than
+    /// expected.
     WrongChip {
-        /// What it holds.
+        /// The content of the identity register.
         found: u8,
     },
-    /// What the part was calibrated to cannot be read, or fails its check.
+    /// The part's calibration cannot be read, or fails its check.
     Uncalibrated,
-    /// The part has lost its settings, with its power.
+    /// The part lost power, and with it its settings.
     Restarted,
-    /// The barometer's pressure configuration reads back otherwise than written.
+    /// The barometer's pressure configuration reads back different from what was written.
     OversamplingRefused {
         /// The byte written.
         wrote: u8,
@@ -60,7 +63,7 @@ pub enum Error<E> {
 }
 
 impl<E: i2c::Error> Error<E> {
-    /// A failed transaction: `missing` if nobody acknowledged, else the bus's error.
+    /// The error of a failed transaction: `missing` if nothing acknowledged, else the bus's error.
     pub(crate) fn of_transaction(source: E, missing: Self) -> Self {
         match source.kind() {
             ErrorKind::NoAcknowledge(_) => missing,
@@ -85,7 +88,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             Self::BusHung { taxel: None, source } => write!(f, "the bus hangs: {source:?}"),
             Self::SwitchMissing => f.write_str("the switch does not acknowledge its address"),
             Self::SwitchReset { wrote, found } => {
-                write!(f, "the switch was told to open {wrote} and has {found} open")
+                write!(f, "the switch was set to open {wrote}, but has {found} open")
             }
             Self::BarometerMissing => f.write_str("the barometer does not acknowledge its address"),
             Self::NotTriggered => f.write_str("no barometer takes the trigger"),
@@ -104,7 +107,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             Self::OversamplingRefused { wrote, found } => {
                 write!(
                     f,
-                    "the barometer was told {wrote:#04x} as its pressure configuration and keeps {found:#04x}"
+                    "the pressure configuration of the barometer was set to {wrote:#04x}, but is {found:#04x}"
                 )
             }
         }

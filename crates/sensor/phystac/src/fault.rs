@@ -1,35 +1,40 @@
-//! What can be wrong with one taxel.
+//! Faults of one taxel.
 
 use core::fmt;
 
 use embedded_hal::i2c::ErrorKind;
 
-/// Why a taxel has no value in a frame; the other taxels have theirs.
+/// Why a taxel has no value in a frame. The other taxels have theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fault {
     /// Its barometer does not acknowledge.
     Missing,
-    /// It has no sample of this frame: its conversion did not end in time, or was lost with its power.
+    /// It has no sample of this frame: its conversion did not end in time, or was lost when the
+    /// part lost power.
     Stuck,
-    /// The bus failed with its channel open, and works again with it closed.
+    /// The bus failed while its channel was open, and works with the channel closed.
     Bus(ErrorKind),
-    /// Its channel hung the bus, and is closed until it is looked into again: after [`Settings::retry_us`](crate::Settings::retry_us), or
+    /// Its channel hung the bus, and stays closed until it is tried again: after
+    /// [`Settings::retry_us`](crate::Settings::retry_us), or by
     /// [`PhysTac::readmit`](crate::PhysTac::readmit).
     Isolated,
-    /// Its barometer does not keep the oversampling that it is given.
+    /// Its barometer does not keep the oversampling that is written.
     Refused,
-    /// Another part than the one described answers at its address.
+    /// The part at its address is not the one described.
     WrongChip,
-    /// What its barometer was calibrated to cannot be read, or fails its check.
+    /// The calibration of its barometer cannot be read, or fails its check.
     Uncalibrated,
-    /// Its barometer lost its settings, with its power; it is switched on anew before the next frame.
+    /// Its barometer lost power, and with it its settings. It is started again before the next
+    /// frame.
     Restarted,
-    /// The sensor has no such taxel: its [`Wiring`](crate::Wiring) is shorter than its capacity.
+    /// The sensor has no such taxel: its [`Wiring`](crate::Wiring) has fewer taxels than its
+    /// capacity `N`.
     NotWired,
-    /// The pressure is at an end of the range or beyond; found by [`Sample::pressure_pa`](crate::Sample::pressure_pa) and
-    /// [`Health`](crate::Health).
+    /// The pressure is at an end of the range or beyond. Found by
+    /// [`Sample::pressure_pa`](crate::Sample::pressure_pa) and [`Health`](crate::Health).
     Saturated,
-    /// The same value, bit for bit, for too many frames; found by [`Health`](crate::Health).
+    /// The value was the same, bit for bit, for too many frames. Found by
+    /// [`Health`](crate::Health).
     Frozen,
 }
 

@@ -3,25 +3,27 @@
 use crate::conversion::{Sample, Transfer};
 use crate::fault::Fault;
 
-/// What all taxels sensed at one moment.
+/// The samples of all taxels at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<const N: usize> {
-    /// When all barometers began to convert, µs of the [`Clock`](crate::Clock).
+    /// When all barometers started to convert, µs of the [`Clock`](crate::Clock).
     pub triggered_us: u64,
-    /// When each taxel had been read, or given up, µs of the [`Clock`](crate::Clock).
+    /// When the read of each taxel ended, with a sample or a fault, µs of the
+    /// [`Clock`](crate::Clock).
     pub read_us: [u64; N],
-    /// What each taxel gave, or why it gave nothing.
+    /// The sample of each taxel, or its fault.
     pub taxels: [Result<Sample, Fault>; N],
 }
 
 impl<const N: usize> Frame<N> {
-    /// What each taxel gave as pressure, Pa, or why it gave nothing. `transfer` counts for chips that do not know their scale.
+    /// The pressure of each taxel, Pa, or its fault. `transfer` is used only for chips whose scale
+    /// is unknown.
     pub fn pressures_pa(&self, transfer: &Transfer) -> [Result<f32, Fault>; N] {
         self.taxels
             .map(|taxel| taxel.and_then(|sample| sample.pressure_pa(transfer)))
     }
 
-    /// The taxels that gave nothing, by index.
+    /// The taxels without a sample: index and fault.
     pub fn faults(&self) -> impl Iterator<Item = (usize, Fault)> {
         let of = |taxel: &Result<Sample, Fault>| taxel.err().filter(|fault| *fault != Fault::NotWired);
         let faults = self.taxels.iter().map(of);

@@ -1,20 +1,23 @@
-//! What only many frames tell: values that no longer change, and taxels that drift away from the others.
+//! Faults that only many frames show: values that no longer change, and taxels that drift away from
+//! the others.
 
 use crate::conversion::{Sample, Transfer};
 use crate::fault::Fault;
 use crate::frame::Frame;
 
-/// From when on a taxel is suspect.
+/// Thresholds from which on a taxel has a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
-    /// Equal samples in a row that make a taxel frozen.
+    /// Number of equal samples in a row that make a taxel frozen.
     ///
-    /// Default 10. A barometer's last bit is below its noise: a living part repeats itself by chance, but not ten times in pressure and
-    /// temperature alike.
+    /// Default 10. The last bit of a barometer is below its noise: a working part can repeat a
+    /// sample by chance, but not ten times in both pressure and temperature.
     pub frozen_frames: u16,
-    /// Drift that is too much, Pa. Default 500: a start, not measured on a sensor.
+    /// The largest drift that is accepted, Pa. Default 500: a first choice, not measured on a
+    /// sensor.
     pub drift_pa: f32,
-    /// The range that the parts are rated for, Pa: they may well count beyond it, but nobody says what. Default: all that counts can say.
+    /// The rated range of the parts, Pa. A part may give counts beyond it, but nothing is specified
+    /// for them. Default: the whole range of counts.
     pub rated_pa: [f32; 2],
 }
 
@@ -29,7 +32,7 @@ impl Default for Thresholds {
 }
 
 impl Thresholds {
-    /// Whether a sample is at an end of its part's range, or of the rated one, or beyond.
+    /// Whether a sample is at an end of its part's range or beyond, or outside the rated range.
     fn is_out_of_range(&self, sample: &Sample, transfer: &Transfer) -> bool {
         let [lowest_pa, highest_pa] = self.rated_pa;
         sample.pressure_pa(transfer).map_or(true, |pressure_pa| {
@@ -38,16 +41,17 @@ impl Thresholds {
     }
 }
 
-/// How far a taxel at rest has gone from where it was.
+/// Drift of a taxel at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// The taxel's change since the first frame at rest, less the median of all, Pa.
+    /// Change of the taxel's pressure since the first frame at rest, minus the median change of all
+    /// taxels, Pa.
     pub drift_pa: f32,
-    /// Whether that is more than [`Thresholds::drift_pa`], to either side.
+    /// Whether its absolute value exceeds [`Thresholds::drift_pa`].
     pub is_too_much: bool,
 }
 
-/// Watches the taxels from frame to frame.
+/// Monitors the taxels from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Health<const N: usize> {
     transfer: Transfer,
@@ -58,7 +62,7 @@ pub struct Health<const N: usize> {
 }
 
 impl<const N: usize> Health<N> {
-    /// Of a sensor of which no frame has been seen.
+    /// A monitor that has seen no frame.
     #[must_use]
     pub const fn new(transfer: Transfer, thresholds: Thresholds) -> Self {
         Self {
@@ -70,9 +74,10 @@ impl<const N: usize> Health<N> {
         }
     }
 
-    /// Looks at the next frame: what is out of range becomes [`Fault::Saturated`], what no longer changes [`Fault::Frozen`].
+    /// Checks the next frame: a value out of range becomes [`Fault::Saturated`], a value that no
+    /// longer changes [`Fault::Frozen`].
     ///
-    /// Taxels that gave nothing stay as they are, and neither start nor end a row of equal samples.
+    /// Taxels without a sample keep their fault. They neither start nor end a row of equal samples.
     pub fn screen(&mut self, frame: &mut Frame<N>) {
         for ((taxel, last), repeats) in frame.taxels.iter_mut().zip(&mut self.last).zip(&mut self.repeats) {
             let Ok(sample) = *taxel else { continue };
@@ -90,10 +95,12 @@ impl<const N: usize> Health<N> {
         }
     }
 
-    /// Looks at a frame taken while nothing touches the sensor: how far each taxel has drifted since the first such frame.
+    /// Checks a frame in which nothing touches the sensor: the drift of each taxel since the first
+    /// such frame.
     ///
-    /// With three or more taxels the median change is taken off, as weather, altitude and temperature change all of them. A taxel
-    /// without a value in the first frame counts from the first one that has it, and its drift from there on.
+    /// With three or more taxels the median change is subtracted, because weather, altitude and
+    /// temperature change all of them. A taxel without a value in the first frame starts with the
+    /// first frame in which it has one; its drift counts from there.
     pub fn at_rest(&mut self, frame: &Frame<N>) -> [Option<Drift>; N] {
         let pressures_pa = frame.pressures_pa(&self.transfer).map(Result::ok);
         let mut changes_pa = [None; N];
@@ -113,13 +120,14 @@ impl<const N: usize> Health<N> {
         drifts
     }
 
-    /// Lets the next frame at rest be the first: after the sensor was zeroed, or its gel changed.
+    /// Takes the next frame at rest as the first one. Call it after the sensor was zeroed, or its
+    /// gel changed.
     pub const fn forget_rest(&mut self) {
         self.rest_pa = [None; N];
     }
 }
 
-/// The middle of at least three numbers.
+/// The median of the numbers that are there. `None` if there are fewer than three.
 fn median<const N: usize>(numbers: [Option<f32>; N]) -> Option<f32> {
     let mut sorted = [f32::INFINITY; N];
     let mut n = 0;

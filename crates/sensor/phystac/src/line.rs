@@ -1,4 +1,4 @@
-//! One chip, where it is: its address, through the channel that is open.
+//! One chip on the bus: its address, through the channel that is open.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -34,10 +34,10 @@ impl<'a, I: I2c, D: DelayNs> Line<'a, I, D> {
         written.map_err(|source| Error::of_transaction(source, Error::BarometerMissing))
     }
 
-    /// A write that resets the chip, whose last byte it may not acknowledge any more.
+    /// A write that resets the chip. The chip may not acknowledge its last byte.
     pub(crate) async fn reset(&mut self, bytes: &[u8]) -> Result<(), Error<I::Error>> {
         match self.write(bytes).await {
-            Err(Error::BarometerMissing) => Ok(()), // one that is not there is found by what comes next
+            Err(Error::BarometerMissing) => Ok(()), // the next transaction finds out if the chip is missing
             written => written,
         }
     }
@@ -52,7 +52,7 @@ impl<'a, I: I2c, D: DelayNs> Line<'a, I, D> {
         Ok(bytes)
     }
 
-    /// That the chip is the one it should be, by its register of identity.
+    /// Checks the chip's identity register.
     pub(crate) async fn identify(&mut self, register: u8, identity: u8) -> Result<(), Error<I::Error>> {
         let [found] = self.read(register).await?;
         if found == identity {
@@ -62,15 +62,15 @@ impl<'a, I: I2c, D: DelayNs> Line<'a, I, D> {
         }
     }
 
-    /// Time that the chip needs.
+    /// Waits for the chip, µs.
     pub(crate) async fn pause_us(&mut self, us: u32) {
         self.delay.delay_us(us).await;
     }
 
-    /// A wait between two questions; takes itself off the patience.
+    /// Waits between two polls, and counts this wait off the patience.
     ///
     /// # Errors
-    /// [`Error::ConversionStuck`] once that is used up.
+    /// [`Error::ConversionStuck`] if no waits are left.
     pub(crate) async fn wait(&mut self) -> Result<(), Error<I::Error>> {
         self.patience.waits = self.patience.waits.checked_sub(1).ok_or(Error::ConversionStuck)?;
         self.delay.delay_us(self.patience.interval_us).await;
@@ -78,17 +78,17 @@ impl<'a, I: I2c, D: DelayNs> Line<'a, I, D> {
     }
 }
 
-/// The unsigned number of three bytes, the most significant first.
+/// The unsigned number of three bytes, most significant byte first.
 pub(crate) const fn u24_be([high, middle, low]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0, high, middle, low])
 }
 
-/// The unsigned number of three bytes, the least significant first.
+/// The unsigned number of three bytes, least significant byte first.
 pub(crate) const fn u24_le([low, middle, high]: [u8; 3]) -> u32 {
     u32::from_le_bytes([low, middle, high, 0])
 }
 
-/// Two's complement of so many bits.
+/// A two's complement number of `bits` bits.
 pub(crate) const fn signed(number: u32, bits: u32) -> i32 {
     let shift = 32 - bits;
     (number << shift).cast_signed() >> shift

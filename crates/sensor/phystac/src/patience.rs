@@ -1,10 +1,11 @@
-//! How long to wait for what may never come.
+//! A limit for waiting.
 
-/// How often to ask again whether a conversion has ended: a bound that no broken clock can move.
+/// How often to poll whether a conversion has ended. The limit counts polls, so that a broken clock
+/// cannot extend it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
-    /// Time between two questions, µs.
+    /// Time between two polls, µs.
     pub interval_us: u32,
-    /// How many such times to wait.
+    /// Number of such waits.
     pub waits: u32,
 }

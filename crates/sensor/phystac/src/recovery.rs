@@ -1,11 +1,13 @@
-//! Freeing a hung bus, with the pins themselves.
+//! Frees a hung bus by driving its pins directly.
 //!
-//! A part that lost count of the clocks, after a reset of the controller in the middle of a read, holds SDA low and waits for more. Nine
-//! clocks let it finish any byte (I²C specification UM10204, section 3.1.16). A part behind the switch only gets them while its channel
-//! is open; the switch's RESET closes all channels, whatever hangs behind them.
+//! If the controller is reset in the middle of a read, a part can be left waiting for more clocks
+//! while it holds SDA low. Nine clocks let it finish any byte (I²C specification UM10204, section
+//! 3.1.16). A part behind the switch gets these clocks only while its channel is open. The switch's
+//! RESET closes all channels, so it helps whatever hangs behind the switch.
 //!
-//! The pins belong to the I²C peripheral while it runs. [`PhysTac::recover`](crate::PhysTac::recover) lends the owner the bus for as long
-//! as this takes; [`PhysTac::release`](crate::PhysTac::release) gives it back for good. RESET is a pin of its own:
+//! The pins belong to the I²C peripheral while it runs.
+//! [`PhysTac::recover`](crate::PhysTac::recover) lends the bus to the caller for this;
+//! [`PhysTac::release`](crate::PhysTac::release) gives it back for good. RESET is a pin of its own:
 //!
 //! ```
 //! use embedded_hal::{delay::DelayNs, digital::OutputPin, i2c::I2c};
@@ -31,15 +33,16 @@ use core::fmt;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error as _, ErrorKind, InputPin, OutputPin, PinState};
 
-/// Half a clock at 100 kHz, which every part follows.
+/// Half a clock at 100 kHz, a rate that every part supports.
 const HALF_CLOCK_US: u32 = 5;
 
-/// Gives nine clocks and a STOP, then looks whether both lines are high. Takes a tenth of a millisecond.
+/// Sends nine clocks and a STOP, then checks that both lines are high. Takes a tenth of a
+/// millisecond.
 ///
-/// Both pins are open-drain: high means let go.
+/// Both pins must be open-drain: high means released.
 ///
 /// # Errors
-/// If a line stays low, or a pin does not do as it is told.
+/// A line stays low, or a pin fails.
 pub fn free_bus(
     scl: &mut (impl OutputPin + InputPin),
     sda: &mut (impl OutputPin + InputPin),
@@ -69,15 +72,16 @@ pub fn free_bus(
     Ok(())
 }
 
-/// Resets the switch through its RESET pin, active low: all channels close, and the switch lets go of the bus.
+/// Resets the switch through its RESET pin, which is active low: all channels close, and the switch
+/// releases the bus.
 ///
 /// # Errors
-/// If the pin does not do as it is told.
+/// The pin fails.
 pub fn reset_switch(reset: &mut impl OutputPin, delay: &mut impl DelayNs) -> Result<(), RecoveryError> {
     set(reset, PinState::Low)?;
-    delay.delay_us(1); // 6 ns would do
+    delay.delay_us(1); // at least 6 ns
     set(reset, PinState::High)?;
-    delay.delay_us(1); // SDA is free after 500 ns
+    delay.delay_us(1); // SDA is released after 500 ns
     Ok(())
 }
 
@@ -95,7 +99,7 @@ fn is_low(pin: &mut impl InputPin) -> Result<bool, RecoveryError> {
 pub enum RecoveryError {
     /// A part, or a short, holds SCL low: no clock gets through.
     ClockHeldLow,
-    /// A part, or a short, holds SDA low, nine clocks on.
+    /// A part, or a short, still holds SDA low after nine clocks.
     DataHeldLow,
     /// A pin failed.
     Pin(ErrorKind),

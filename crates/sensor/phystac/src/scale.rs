@@ -1,29 +1,32 @@
-//! Which scale a part has, told by the atmosphere.
+//! Finds the scale of a part from the atmospheric pressure.
 
 use core::fmt;
 
 use crate::conversion::{Counts, Pressure, Transfer};
 use crate::frame::Frame;
 
-/// Counts per Pa that a part of the family can have, if the atmosphere is within its range: 2²³ counts are 2.1 MPa to 131 kPa.
+/// Counts per Pa that a part of the family can have, if its range includes the atmosphere: 2²³
+/// counts are 2.1 MPa to 131 kPa.
 ///
-/// 8 to 64 stand in the data sheet of the XGZP6847D; 4, for more than 1 MPa, continues its table.
+/// 8 to 64 are in the data sheet of the XGZP6847D; 4, for more than 1 MPa, continues its table.
 pub const SCALES_PER_PA: [u16; 5] = [4, 8, 16, 32, 64];
 
-/// The pressures that free air can have.
+/// The range of pressures that free air can have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeAir {
     /// The lowest, Pa.
     pub lowest_pa: f32,
-    /// The highest, Pa. Less than twice the lowest tells all scales apart.
+    /// The highest, Pa. If it is less than twice the lowest, the scales can be told apart.
     pub highest_pa: f32,
 }
 
 impl FreeAir {
-    /// Around the standard atmosphere (ISO 2533) at an altitude, ±7 %: weather, and parts that are somewhat off. For -500 to 9000 m.
+    /// The standard atmosphere (ISO 2533) at an altitude, ±7 % for weather and for parts that read
+    /// slightly wrong. Valid for -500 to 9000 m.
     #[must_use]
     pub fn at_altitude_m(altitude_m: f32) -> Self {
-        // (1 - 0.0065 K/m · altitude / 288.15 K)^5.25588 by its binomial series: `core` has no powers.
+        // (1 - 0.0065 K/m · altitude / 288.15 K)^5.25588 by its binomial series, because `core` has
+        // no power function.
         let base = -altitude_m * (0.0065 / 288.15);
         let (mut sum, mut term) = (1.0, 1.0);
         for order in 0_u8..12 {
@@ -43,7 +46,7 @@ impl FreeAir {
     }
 }
 
-/// Up to 2000 m in any weather: 80 to 108 kPa.
+/// Altitudes up to 2000 m in any weather: 80 to 108 kPa.
 impl Default for FreeAir {
     fn default() -> Self {
         Self {
@@ -53,23 +56,25 @@ impl Default for FreeAir {
     }
 }
 
-/// A scale that makes free air of what all taxels read: a hint, until somebody confirms it.
+/// The scale at which all taxels read the pressure of free air. It is a hint until somebody
+/// confirms it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use = "a scale hint is no transfer until it is confirmed"]
+#[must_use = "a scale hint must be confirmed before it becomes a transfer"]
 pub struct ScaleHint {
     /// Counts per Pa.
     pub counts_per_pa: u16,
-    /// The lowest pressure that a taxel then reads, Pa.
+    /// The lowest pressure that a taxel reads at this scale, Pa.
     pub lowest_pa: f32,
     /// The highest, Pa.
     pub highest_pa: f32,
 }
 
 impl ScaleHint {
-    /// The transfer, now that somebody who knows the part has agreed.
+    /// The transfer, confirmed by somebody who knows the part.
     ///
-    /// The atmosphere does not tell whether counts are `signed`. The range does: if the part's is beyond the signed transfer's
-    /// [`full_scale_pa`](Transfer::full_scale_pa), they are not.
+    /// The atmosphere does not tell whether counts are `signed`. The range does: if the part's
+    /// range exceeds the [`full_scale_pa`](Transfer::full_scale_pa) of the signed transfer, the
+    /// counts are not signed.
     #[must_use]
     pub const fn confirm(self, signed: bool) -> Transfer {
         Transfer {
@@ -79,12 +84,13 @@ impl ScaleHint {
     }
 }
 
-/// The scale with which all taxels of a frame, taken with nothing touching the sensor, read free air.
+/// The scale at which all taxels of a frame read the pressure of free air. Nothing may touch the
+/// sensor in this frame.
 ///
-/// Taxels that gave nothing do not vote, nor do those whose chip knows its scale.
+/// Taxels without a sample, and taxels whose chip has a known scale, are ignored.
 ///
 /// # Errors
-/// If that is not exactly one scale.
+/// There is not exactly one such scale.
 pub fn scale_hint<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<ScaleHint, ScaleError> {
     let mut hint = None;
     for (taxel, sample) in frame.taxels.iter().enumerate() {
@@ -112,7 +118,7 @@ pub fn scale_hint<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<Scal
     hint.ok_or(ScaleError::NoSample)
 }
 
-/// The one scale, counts per Pa, with which a taxel reads free air.
+/// The only scale, in counts per Pa, at which a taxel reads the pressure of free air.
 fn scale_of(taxel: usize, counts: Counts, air: FreeAir) -> Result<u16, ScaleError> {
     let mut fitting = SCALES_PER_PA
         .into_iter()
@@ -137,27 +143,28 @@ fn pressure_pa(counts: Counts, counts_per_pa: u16) -> f32 {
 pub enum ScaleError {
     /// No taxel gave a value.
     NoSample,
-    /// No scale of the family makes free air of what a taxel reads: another part, another transfer, or a pressed taxel.
+    /// At no scale of the family does a taxel read the pressure of free air: it is another part,
+    /// has another transfer, or is pressed.
     NoScale {
         /// The taxel.
         taxel: usize,
         /// What it reads.
         counts: Counts,
     },
-    /// More than one scale does: narrow down [`FreeAir`].
+    /// More than one scale fits: narrow down [`FreeAir`].
     Ambiguous {
         /// The taxel.
         taxel: usize,
         /// What it reads.
         counts: Counts,
-        /// Two such scales, counts per Pa.
+        /// Two scales that fit, counts per Pa.
         scales_per_pa: [u16; 2],
     },
-    /// Taxels differ in the scale that does: parts of different range, or one that is broken.
+    /// Different scales fit different taxels: parts of different range, or a broken one.
     Disagreement {
         /// The first taxel that differs from those before it.
         taxel: usize,
-        /// Theirs, then its own, counts per Pa.
+        /// The scale of those before, then its own, counts per Pa.
         scales_per_pa: [u16; 2],
     },
 }
@@ -169,7 +176,7 @@ impl fmt::Display for ScaleError {
             Self::NoScale { taxel, counts } => {
                 write!(
                     f,
-                    "taxel {taxel} reads {} counts: free air in no known scale",
+                    "taxel {taxel} reads {} counts, which no known scale makes free air",
                     counts.signed()
                 )
             }
@@ -181,7 +188,7 @@ impl fmt::Display for ScaleError {
                 let counts = counts.signed();
                 write!(
                     f,
-                    "taxel {taxel} reads {counts} counts: free air at {one} and at {other} counts per Pa"
+                    "taxel {taxel} reads {counts} counts, which is free air at {one} and at {other} counts per Pa"
                 )
             }
             Self::Disagreement {

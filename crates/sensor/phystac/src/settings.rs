@@ -1,26 +1,27 @@
-//! How the sensor is wired, and how long its barometers take.
+//! Wiring and timing of a sensor.
 
 use crate::patience::Patience;
 use crate::wiring::Wiring;
 
-/// How a [`PhysTac`](crate::PhysTac) is wired and timed.
+/// Wiring and timing of a [`PhysTac`](crate::PhysTac).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings<const N: usize> {
-    /// Which chip each taxel is, and where.
+    /// The chip and the location of each taxel.
     pub wiring: Wiring<N>,
-    /// How long to leave a chip alone after its trigger, µs, if its data sheet does not say. Default 6000, what public code of the CPS135B
-    /// waits.
+    /// Wait after the trigger for chips whose data sheet gives no conversion time, µs. Default
+    /// 6000, as in public code for the CPS135B.
     pub conversion_us: u32,
-    /// How long all taxels together may take beyond that. Default 56 waits of 250 µs: 20 ms in all, the longest conversion of the CPS135B's
-    /// family.
+    /// How long all taxels of a frame together may take beyond that. Default 56 waits of 250 µs: 20
+    /// ms in total, the longest conversion of the CPS135B's family.
     pub patience: Patience,
-    /// How long a channel that hung the bus stays closed before it is looked into again, µs. Each further time is twice as long, up to 64 times.
-    /// Default 1 s: a channel that goes on hanging the bus costs a frame each time.
+    /// How long a channel that hung the bus stays closed before it is tried again, µs. Each further
+    /// time is twice as long, up to 64 times. Default 1 s: each try of a channel that still hangs
+    /// the bus costs a frame.
     pub retry_us: u32,
 }
 
 impl<const N: usize> Settings<N> {
-    /// The defaults, for a wiring.
+    /// Default settings for a wiring.
     #[must_use]
     pub fn new(wiring: Wiring<N>) -> Self {
         Self {
@@ -35,7 +36,7 @@ impl<const N: usize> Settings<N> {
     }
 }
 
-/// Taxel `i` a CPS135B on channel `i` of a switch at 0x70.
+/// Taxel `i` is a CPS135B on channel `i` of a switch at 0x70.
 impl Default for Settings<8> {
     fn default() -> Self {
         Self::new(Wiring::default())

@@ -1,23 +1,25 @@
-//! Whether a taxel has a reading, as a number for files and lines.
+//! The state of a taxel as a number, for files and serial lines.
 
 use core::fmt;
 
 use crate::Fault;
 
-/// Whether a taxel's pressure can be used, and why not. Numbers stand in logs and on serial lines, and stay as they are.
+/// Whether a taxel's pressure can be used, and if not, why. Logs and serial lines contain these
+/// numbers: they never change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum TaxelState {
-    /// It can.
+    /// The pressure can be used.
     #[default]
     Good = 0,
     /// Its barometer does not acknowledge.
     Missing = 1,
-    /// It has no sample of this frame: its conversion did not end in time, or was lost with its power.
+    /// It has no sample of this frame: its conversion did not end in time, or was lost when the
+    /// part lost power.
     Stuck = 2,
-    /// The bus failed with its channel open.
+    /// The bus failed while its channel was open.
     BusError = 3,
-    /// Its channel hung the bus and is kept closed.
+    /// Its channel hung the bus and stays closed.
     Isolated = 4,
     /// Its barometer does not keep its settings.
     Refused = 5,
@@ -25,18 +27,18 @@ pub enum TaxelState {
     Saturated = 6,
     /// Its value no longer changes.
     Frozen = 7,
-    /// Another part than the one described answers at its address.
+    /// The part at its address is not the one described.
     WrongChip = 8,
-    /// What its barometer was calibrated to cannot be read, or fails its check.
+    /// The calibration of its barometer cannot be read, or fails its check.
     Uncalibrated = 9,
-    /// Its barometer lost its settings, with its power.
+    /// Its barometer lost power, and with it its settings.
     Restarted = 10,
-    /// It only counts, and nobody said how many counts are a Pa.
+    /// The barometer only counts, and its scale was not given.
     Unscaled = 11,
 }
 
 impl TaxelState {
-    /// All of them, each at its number.
+    /// All states, each at the index of its number.
     const ALL: [Self; 12] = [
         Self::Good,
         Self::Missing,
@@ -52,7 +54,7 @@ impl TaxelState {
         Self::Unscaled,
     ];
 
-    /// Why the pressure cannot be used, in a word or two; `None` if it can.
+    /// Why the pressure cannot be used, in one or two words. `None` if it can.
     #[must_use]
     pub const fn fault(self) -> Option<&'static str> {
         match self {
@@ -71,7 +73,7 @@ impl TaxelState {
         }
     }
 
-    /// The state of a number; `None`: there is none.
+    /// The state with this number. `None`: there is no such state.
     #[must_use]
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.get(usize::from(code)).copied()
@@ -95,7 +97,7 @@ impl From<Fault> for TaxelState {
     }
 }
 
-/// `good`, or why not, in a word or two.
+/// `good`, or the fault in one or two words.
 impl fmt::Display for TaxelState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.fault().unwrap_or("good"))

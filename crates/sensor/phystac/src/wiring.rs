@@ -1,25 +1,26 @@
-//! Which chip each taxel is, and where.
+//! The chip and the location of each taxel.
 
 use core::fmt;
 
 use crate::channels::{Channels, SwitchAddress};
 use crate::chip::{Chip, Speed};
 
-/// A taxel's barometer, and where it is.
+/// A taxel's barometer and its location on the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wired {
-    /// Which chip it is.
+    /// The chip.
     pub chip: Chip,
-    /// Its 7-bit address.
+    /// The chip's 7-bit address.
     pub address: u8,
-    /// The switch that it is behind, and on which channel, 0 to 7. `None`: it is on the bus itself.
+    /// The switch, and its channel, 0 to 7. `None`: the chip is on the bus itself.
     pub behind: Option<(SwitchAddress, u8)>,
-    /// How many samples make one pressure. `None`: the chip's [`usual_samples`](crate::ChipData::usual_samples).
+    /// Samples averaged for one pressure. `None`: the chip's
+    /// [`usual_samples`](crate::ChipData::usual_samples).
     pub samples: Option<u16>,
 }
 
 impl Wired {
-    /// At the chip's first address, on a channel of a switch at 0x70.
+    /// A chip at its first address, on a channel of a switch at 0x70.
     #[must_use]
     pub fn on_channel(chip: Chip, channel: u8) -> Self {
         Self {
@@ -30,30 +31,30 @@ impl Wired {
         }
     }
 
-    /// Whether it is behind the switch of that address.
+    /// Whether it is behind the switch with this address.
     fn is_behind(&self, address: u8) -> bool {
         self.behind.is_some_and(|(switch, _)| switch.get() == address)
     }
 }
 
-/// Where a taxel is, checked.
+/// The location of a taxel, checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) chip: Chip,
     pub(crate) address: u8,
-    /// The switch's address and the one channel of it.
+    /// The switch's address, and its one channel.
     pub(crate) behind: Option<(SwitchAddress, Channels)>,
 }
 
-/// Which chip each of up to `N` taxels is and where, such that each can be spoken to alone. `N` is at most 64.
+/// Chip and location of up to `N` taxels, such that each can be addressed alone. `N` is at most 64.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wiring<const N: usize>([Option<Wired>; N]);
 
 impl<const N: usize> Wiring<N> {
-    /// Of taxels in their order.
+    /// The wiring of these taxels, in their order.
     ///
     /// # Errors
-    /// What cannot be wired, or cannot be told apart on the wires.
+    /// Taxels that cannot be wired so, or cannot be distinguished on the bus.
     pub fn new(taxels: &[Wired]) -> Result<Self, WiringError> {
         const { assert!(N <= 64, "a sensor has at most 64 taxels") }
         if taxels.len() > N {
@@ -70,7 +71,7 @@ impl<const N: usize> Wiring<N> {
         Ok(Self(wiring))
     }
 
-    /// Taxel `i` a CPS135B on channel `channels[i]` of a switch at 0x70.
+    /// Taxel `i` is a CPS135B on channel `channels[i]` of a switch at 0x70.
     ///
     /// # Errors
     /// A channel beyond 7, or given twice.
@@ -99,7 +100,7 @@ impl<const N: usize> Wiring<N> {
         wired.chip.data().speed(wired.samples)?
     }
 
-    /// The switches that there are, each once.
+    /// The switches, each once.
     pub(crate) fn switches(&self) -> impl Iterator<Item = SwitchAddress> + use<N> {
         let used = self.taxels().fold(0_u8, |used, wired| {
             used | wired
@@ -112,7 +113,7 @@ impl<const N: usize> Wiring<N> {
     }
 }
 
-/// Taxel `i` a CPS135B on channel `i` of a switch at 0x70: the PhysTac.
+/// Taxel `i` is a CPS135B on channel `i` of a switch at 0x70: the PhysTac.
 impl Default for Wiring<8> {
     fn default() -> Self {
         Self([0, 1, 2, 3, 4, 5, 6, 7].map(|channel| Some(Wired::on_channel(Chip::Cps135b, channel))))
@@ -158,12 +159,12 @@ fn check_pair((taxel, one): (usize, &Wired), (other, two): (usize, &Wired)) -> R
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WiringError {
-    /// There are more taxels than the driver has room for.
+    /// There are more taxels than the driver's capacity.
     TooMany {
-        /// How many it has room for.
+        /// The capacity.
         most: usize,
     },
-    /// No such chip can have that address.
+    /// The chip cannot have this address.
     Address {
         /// The taxel.
         taxel: usize,
@@ -172,14 +173,14 @@ pub enum WiringError {
         /// The address.
         address: u8,
     },
-    /// A switch has channels 0 to 7.
+    /// The channel is beyond the switch's channels 0 to 7.
     Channel {
         /// The taxel.
         taxel: usize,
         /// The channel.
         channel: u8,
     },
-    /// The chip cannot average over so many samples.
+    /// The chip has no such number of samples.
     Samples {
         /// The taxel.
         taxel: usize,
@@ -192,27 +193,28 @@ pub enum WiringError {
     SamePlace {
         /// The taxel.
         taxel: usize,
-        /// The one before it.
+        /// The taxel before it with the same location.
         other: usize,
     },
-    /// One of the two is on the bus itself and has the address of the other, which is behind a switch: both would answer.
+    /// One of two taxels is on the bus itself and has the same address as the other, which is
+    /// behind a switch: both would answer.
     Hidden {
-        /// The taxel.
+        /// The second of the two.
         taxel: usize,
-        /// The one before it.
+        /// The first of the two.
         other: usize,
     },
     /// One of the two has the address of a switch.
     AddressOfSwitch {
-        /// The taxel.
+        /// The second of the two.
         taxel: usize,
-        /// The one before it.
+        /// The first of the two.
         other: usize,
     },
 }
 
 impl WiringError {
-    /// The taxel that is wrong, if it is one.
+    /// The index of the taxel that is wrong, if it is one.
     #[must_use]
     pub const fn taxel(&self) -> Option<usize> {
         match self {
@@ -232,13 +234,13 @@ impl fmt::Display for WiringError {
         match self {
             Self::TooMany { most } => write!(f, "there are more than {most} taxels"),
             Self::Address { chip, address, .. } => {
-                write!(f, "{address:#04x} is no address of a {chip}, which can have")?;
+                write!(f, "{address:#04x} is not an address of a {chip}, which can have")?;
                 for (index, possible) in chip.data().addresses.iter().enumerate() {
                     write!(f, "{} {possible:#04x}", if index == 0 { "" } else { " or" })?;
                 }
                 Ok(())
             }
-            Self::Channel { channel, .. } => write!(f, "{channel} is no channel of a switch: 0 to 7"),
+            Self::Channel { channel, .. } => write!(f, "{channel} is not a channel of a switch, 0 to 7"),
             Self::Samples { chip, samples, .. } => {
                 write!(f, "a {chip} cannot average over {samples} samples, but over")?;
                 for (index, speed) in chip.data().speeds.iter().enumerate() {
@@ -338,7 +340,7 @@ mod tests {
         );
         assert_eq!(
             wrong(&[bmp(0x75, 0x70, 0)]).to_string(),
-            "0x75 is no address of a BMP390, which can have 0x76 or 0x77"
+            "0x75 is not an address of a BMP390, which can have 0x76 or 0x77"
         );
         assert!(Wiring::of_cps135b([3, 5, 3]).is_err());
     }

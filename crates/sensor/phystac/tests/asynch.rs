@@ -1,4 +1,4 @@
-//! The same over an async bus, which may be dropped while it waits.
+//! The drivers over an async bus; futures are dropped while they wait.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! One thing broken at a time, at every point where it can break.
+//! One fault at a time, at every transaction at which it can occur.
 
 mod common;
 
@@ -13,7 +13,8 @@ fn sensor_on(bench: &Bench) -> Sensor<impl Fn() -> u64 + use<>> {
     PhysTac::new(bench.clone(), bench.clone(), bench.clock(), Settings::default())
 }
 
-/// A frame of a pressure that no frame before had. What it gives as a value must be of this frame.
+/// Reads a frame with a pressure that no earlier frame had. A value that the frame contains must be
+/// of this frame.
 fn next_frame<C: Fn() -> u64>(bench: &Bench, sensor: &mut Sensor<C>) -> Outcome {
     bench.with(|world| world.parts.iter_mut().for_each(|part| part.counts += 1000));
     let frame = sensor.frame()?;
@@ -74,7 +75,7 @@ fn a_barometer_that_comes_back_after_the_trigger_has_no_sample_of_this_frame() {
         );
         sensor.trigger().unwrap();
         bench.with(|world| world.parts[missing].is_present = true);
-        // Its registers still hold a sample, of a frame long ago.
+        // Its registers still hold a sample of an earlier frame.
         assert_eq!(faults(&sensor.frame().unwrap()), [(missing, Fault::Missing)]);
         assert!(is_complete(&next_frame(&bench, &mut sensor)));
     }
@@ -111,7 +112,8 @@ fn conversions_that_never_end_cost_the_frame_its_patience_once() {
         let passed_ns = bench.with(|world| world.now_ns) - before_ns;
         assert!((20_000_000..32_000_000).contains(&passed_ns), "{passed_ns} ns");
 
-        // It is not waited for again, and not triggered before it has ended.
+        // The driver does not wait for it again, and does not trigger it before its conversion has
+        // ended.
         let before_ns = bench.with(|world| world.now_ns);
         match next_frame(&bench, &mut sensor) {
             Ok(frame) => {
@@ -281,7 +283,8 @@ fn a_switch_that_loses_its_mask_at_any_transaction_gives_no_wrong_value() {
     }
 }
 
-/// Frames until one comes, with the switch's RESET after each error.
+/// Reads until a frame succeeds, with the switch's RESET after each error. Returns the number of
+/// errors, and the frame.
 fn frame_with_resets<C: Fn() -> u64>(bench: &Bench, sensor: &mut Sensor<C>) -> (usize, Frame<8>) {
     for n_resets in 0..10 {
         match next_frame(bench, sensor) {
@@ -317,7 +320,8 @@ fn a_shorted_taxel_is_found_and_left_out() {
     }
 }
 
-/// Frames for so long, with the switch's RESET after each error: when the taxel has a value again, ms, and how many frames were lost.
+/// Reads frames for a given time, with the switch's RESET after each error. Returns when the taxel
+/// has a value again, ms, and how many frames were lost.
 fn frames_for<C: Fn() -> u64>(
     bench: &Bench,
     sensor: &mut Sensor<C>,

@@ -1,4 +1,4 @@
-//! Two lines, and a part that holds one of them.
+//! Two bus lines, and a part that holds one of them.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -12,10 +12,10 @@ use phystac::recovery::{RecoveryError, free_bus, reset_switch};
 struct Lines {
     scl: bool,
     sda: bool,
-    /// Clocks for which a part goes on holding SDA.
+    /// For how many clocks a part keeps holding SDA.
     held_clocks: u32,
     clock_is_held: bool,
-    /// Clocks that the lines have seen.
+    /// Number of clocks on the lines.
     clocks: u32,
     stops: u32,
     now_ns: u64,

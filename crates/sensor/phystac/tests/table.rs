@@ -1,4 +1,4 @@
-//! The table of chips in the guide is the one of the drivers.
+//! The table of chips in the hardware guide agrees with the drivers.
 
 use phystac::{Budget, Chip, Settings, Wired, Wiring};
 

@@ -1,4 +1,4 @@
-//! What goes over the wires, byte for byte, and how long it takes.
+//! The bytes on the bus, and how long they take.
 
 mod common;
 
@@ -84,7 +84,7 @@ fn a_frame_triggered_early_is_not_waited_for() {
     let bench = Bench::new();
     let mut sensor = PhysTac::new(bench.clone(), bench.clone(), bench.clock(), Settings::default());
     sensor.trigger().unwrap();
-    sensor.trigger().unwrap(); // is under way already
+    sensor.trigger().unwrap(); // already in progress
     bench.with(|world| world.now_ns += 50_000_000);
     let (triggers, now_ns) = (bench.take_log(), bench.with(|world| world.now_ns));
     assert_eq!(triggers.iter().filter(|line| *line == "6d 30 0a").count(), 1);

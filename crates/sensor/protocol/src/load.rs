@@ -8,22 +8,23 @@ use twintac_random::stream;
 use crate::part::{LONGEST_S, name_of, once};
 use crate::{Indenters, Places, PlanError, Range, Target};
 
-/// Heaviest weight, N: a hundred kilograms.
+/// Largest weight, N: about that of 100 kg.
 const MOST_N: f64 = 1000.0;
 
-/// Weights that are put on, left there and taken off, as people write them.
+/// Weights that are put on, left there and taken off, in the form of the file.
 ///
-/// The weight is what is known, so it can be smaller than a force sensor tells from nothing. No robot carries it.
+/// The force is known from the weight, so it may be smaller than a force sensor can detect. No
+/// robot carries the weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
-    /// Begins the names of its loads.
+    /// Prefix of the names of its loads.
     pub name: String,
-    /// What it is for.
+    /// Its purpose.
     pub summary: String,
-    /// Which indenters stand on the gel, one after the other.
+    /// Indenters that stand on the gel, one after the other.
     pub indenters: Indenters,
-    /// Where they stand.
+    /// Locations where they stand.
     pub places: Places,
     /// Weight, indenter included, N.
     pub force_n: Range,
@@ -31,7 +32,7 @@ pub struct Load {
     pub rest_s: f64,
     /// Time with the weight, s.
     pub hold_s: f64,
-    /// How often the whole list of places is loaded.
+    /// How often the whole list of locations is loaded.
     #[serde(default = "once")]
     pub repeats: u32,
 }
@@ -43,9 +44,9 @@ pub struct LoadPlan {
     pub name: String,
     /// Name of the indenter in the sensor description.
     pub indenter: String,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// x of the indenter's origin in the gel's frame, mm.
     pub x_mm: f64,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// y of the indenter's origin in the gel's frame, mm.
     pub y_mm: f64,
     /// Weight, N.
     pub force_n: f64,
@@ -56,7 +57,7 @@ pub struct LoadPlan {
 }
 
 impl Load {
-    /// `within` is where the load's fields stand in the document.
+    /// Checks the load. `within` is the path of the table with the load's fields.
     pub(crate) fn check<T>(&self, document: &Document<T>, within: &str) -> Result<(), ConfigError> {
         let error = |field: &str, problem: String, hint: &str| {
             Err(document.error(&format!("{within}{field}"), problem, hint))
@@ -103,11 +104,11 @@ impl Load {
     }
 }
 
-/// How long a weight takes to be put on or taken off, s.
+/// Time to put a weight on or to take it off, s.
 const MOVE_S: f64 = 0.1;
 
 impl LoadPlan {
-    /// Time (s) and force on the gel (N) at a frame rate.
+    /// Time, s, and force on the gel, N, at a frame rate.
     #[must_use]
     pub fn course(&self, rate_hz: f64) -> Vec<(f64, f64)> {
         let on_s = self.rest_s + MOVE_S;

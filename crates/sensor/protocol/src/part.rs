@@ -1,4 +1,4 @@
-//! Presses of one kind, as people write them.
+//! Presses of one kind, in the form of the file.
 
 use glam::{DQuat, DVec3};
 use rand::Rng;
@@ -14,49 +14,49 @@ use crate::{Indenters, Places, PlanError, PressPlan, Range, Target};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// Begins the names of its presses. A protocol of one part needs none.
+    /// Prefix of the names of its presses. A protocol of a single part needs none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// What it is for.
+    /// Its purpose.
     pub summary: String,
-    /// Which indenters press, one after the other.
+    /// Indenters that press, one after the other.
     pub indenters: Indenters,
-    /// Where they press.
+    /// Locations of the presses.
     pub places: Places,
-    /// Depth below first touch, mm.
+    /// Depth below the first touch, mm.
     pub depth_mm: Range,
     /// Speed of approach and retreat, mm/s.
     pub speed_mm_per_s: Range,
     /// Time at full depth, s.
     pub hold_s: Range,
-    /// Turn about the vertical, radians.
+    /// Yaw: rotation about the vertical, radians.
     #[serde(default)]
     pub spin_rad: Range,
-    /// Tilt away from the vertical, in a random direction, radians.
+    /// Tilt from the vertical, in a random direction, radians.
     #[serde(default)]
     pub tilt_rad: Range,
-    /// Height above first touch at which a press starts and ends, mm.
+    /// Height above the first touch at which a press starts and ends, mm.
     pub clearance_mm: f64,
-    /// How often the whole list of places is pressed.
+    /// How often the whole list of locations is pressed.
     #[serde(default = "once")]
     pub repeats: u32,
 }
 
-/// Longest way and fastest speed of a press, mm and mm/s: beyond any gel and any arm.
+/// Largest distance, mm, and speed, mm/s, of a press: beyond any gel and any robot arm.
 const MOST_MM: f64 = 1000.0;
 const MOST_MM_PER_S: f64 = 1000.0;
 
-/// Longest time of a phase of a press, s: an hour of frames fits in memory.
+/// Longest phase of a press, s: the frames of an hour fit in memory.
 pub(crate) const LONGEST_S: f64 = 3600.0;
 
-/// Farthest turn, radians.
+/// Largest yaw, radians.
 const MOST_SPIN_RAD: f64 = 100.0;
 
 pub(crate) fn once() -> u32 {
     1
 }
 
-/// What a press or a load is called.
+/// The name of a press or a load.
 pub(crate) fn name_of(part: &str, indenter: &str, number: u32) -> String {
     let dash = if part.is_empty() { "" } else { "-" };
     format!("{part}{dash}{indenter}#{number:03}")
@@ -70,19 +70,19 @@ pub(crate) struct Series<'a> {
 }
 
 impl Series<'_> {
-    /// How many they are.
+    /// Number of presses.
     pub(crate) fn count(&self) -> u32 {
         self.part.repeats * self.spots.count()
     }
 
-    /// One of them, by its number from 0.
+    /// The press with this number, counted from 0.
     pub(crate) fn press(&self, number: u32, seed: u64) -> PressPlan {
         self.part.press(self.indenter, &self.spots, number, seed)
     }
 }
 
 impl Part {
-    /// `within` is where the part's fields stand in the document.
+    /// Checks the part. `within` is the path of the table with the part's fields.
     pub(crate) fn check<T>(&self, document: &Document<T>, within: &str) -> Result<(), ConfigError> {
         let error = |field: &str, problem: String, hint: &str| {
             Err(document.error(&format!("{within}{field}"), problem, hint))
@@ -118,7 +118,8 @@ impl Part {
         Ok(())
     }
 
-    /// A list of presses for each indenter: the whole list of places as often as it is repeated.
+    /// A series of presses for each indenter: the whole list of locations, as often as it is
+    /// repeated.
     pub(crate) fn series<'a>(&'a self, target: &'a Target) -> Result<Vec<Series<'a>>, PlanError> {
         let indenters = self.indenters.named(target)?.iter();
         let series = |indenter: &'a String| {

@@ -1,49 +1,51 @@
-//! A path as people write it: one indenter through given poses.
+//! A path, in the form of the file: one indenter moves through given poses.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use twintac_config::ConfigError;
 use twintac_shape::Pose;
 
-/// Farthest that an indenter may be from the gel's origin, mm.
+/// Largest distance of an indenter from the gel's origin, mm.
 const FARTHEST_MM: f64 = 10_000.0;
 
-/// Most frames of a path.
+/// Largest number of frames of a path.
 const MOST_FRAMES: f64 = 100_000.0;
 
 /// A path of an indenter over and into a gel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PressPath {
-    /// What the path is for.
+    /// Its purpose.
     pub summary: String,
     /// Name of the indenter in the sensor description.
     pub indenter: String,
-    /// Where heights are counted from.
+    /// The origin of heights.
     pub zero: Zero,
-    /// Frames in a second between the poses, Hz; without it, the poses themselves are the frames.
+    /// Frame rate between the poses, Hz. If left out, the poses themselves are the frames.
     #[serde(default)]
     pub rate_hz: Option<f64>,
-    /// Where the indenter is when; it moves evenly between.
+    /// Poses of the indenter over time, with linear interpolation between them.
     pub poses: Vec<Waypoint>,
-    /// The direction, in the gel's frame, of forces that waypoints ask for; of any length. Default straight down.
+    /// Direction of the forces that waypoints ask for, in the gel's frame; its length does not
+    /// matter. Default straight down.
     #[serde(default = "down", skip_serializing_if = "is_down")]
     pub force_direction: DVec3,
-    /// How far along that direction the indenter may be from a pose to meet a force, to either side, mm. Default the gel's height.
+    /// Largest distance between the indenter and a pose along that direction, to either side, to
+    /// reach a force, mm. Default: the gel's height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_travel_mm: Option<f64>,
-    /// Places in the gel, other than the taxels, at which to read the pressure.
+    /// Positions in the gel, besides the taxels, at which the pressure is read.
     #[serde(default)]
     pub points: Vec<Point>,
 }
 
-/// What of a path cannot be.
+/// Why a path is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{field}` {problem}; {hint}")]
 pub struct PathError {
     /// The field, with indices from 0: `poses[2].time_s`.
     pub field: String,
-    /// What is wrong, read after the field's name.
+    /// What is wrong; it follows the field's name.
     pub problem: String,
     /// What to do about it.
     pub hint: String,
@@ -59,43 +61,46 @@ impl PathError {
     }
 }
 
-/// Where heights are counted from.
+/// The origin of heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Zero {
-    /// From where the indenter, at the place and turn of the first pose, first touches the gel.
+    /// The height at which the indenter, at the location and rotation of the first pose, first
+    /// touches the gel.
     Touch,
-    /// From the board.
+    /// The board.
     Board,
 }
 
-/// Where the indenter is at a time.
+/// The pose of the indenter at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Waypoint {
     /// Time, s.
     pub time_s: f64,
-    /// The indenter's origin, mm; z counts from [`PressPath::zero`].
+    /// Position of the indenter's origin, mm; z counts from [`PressPath::zero`].
     pub position_mm: DVec3,
-    /// Turn from the indenter's upright pose: an axis in the gel's frame, its length the angle, radians.
+    /// Rotation from the indenter's upright pose: an axis in the gel's frame, whose length is the
+    /// angle, radians.
     #[serde(default)]
     pub turn_rad: DVec3,
-    /// Force on the gel along [`PressPath::force_direction`], N: the indenter goes along that direction, from the position given, to where it
-    /// presses with this force. On the way to this waypoint the force changes evenly, from what it was at the last one.
+    /// Force on the gel along [`PressPath::force_direction`], N. The indenter moves from the given
+    /// position along that direction until it presses with this force. The force changes linearly
+    /// from that of the last waypoint to this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<f64>,
 }
 
-/// A moment of a path.
+/// One frame of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathFrame {
     /// Time, s.
     pub time_s: f64,
-    /// The pose evenly between those of the waypoints before and after; heights as in the file.
+    /// The pose, interpolated between the waypoints before and after; heights as in the file.
     pub pose: Pose,
-    /// How far between them, from 0 to 1.
+    /// The fraction of the way between them, 0 to 1.
     pub part: f64,
-    /// The forces that they ask for, N.
+    /// The forces that the two waypoints ask for, N.
     pub forces_n: [Option<f64>; 2],
 }
 
@@ -107,11 +112,11 @@ fn is_down(direction: &DVec3) -> bool {
     *direction == down()
 }
 
-/// A disc, parallel to the board, over which the gel's pressure is averaged.
+/// A disc parallel to the board over which the gel's pressure is averaged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Point {
-    /// A name of its own.
+    /// A unique name.
     pub name: String,
     /// Its centre, mm.
     pub position_mm: DVec3,
@@ -120,7 +125,8 @@ pub struct Point {
 }
 
 impl PressPath {
-    /// A path through poses of the indenter in the gel's frame, each at a time, s. The poses themselves are the frames.
+    /// A path through poses of the indenter in the gel's frame, each with a time, s. The poses
+    /// themselves are the frames.
     #[must_use]
     pub fn through(indenter: &str, poses: impl IntoIterator<Item = (f64, Pose)>) -> Self {
         let waypoint = |(time_s, pose): (f64, Pose)| Waypoint {
@@ -152,7 +158,7 @@ impl PressPath {
         Ok(document.value)
     }
 
-    /// Whether this path can be.
+    /// Checks this path.
     ///
     /// # Errors
     /// The first field that is wrong.
@@ -173,7 +179,7 @@ impl PressPath {
             let farthest_mm = pose.position_mm.abs().max_element();
             if farthest_mm > FARTHEST_MM {
                 let field = format!("poses[{index}].position_mm");
-                let hint = format!("give places within {FARTHEST_MM} mm of the gel's origin");
+                let hint = format!("give positions within {FARTHEST_MM} mm of the gel's origin");
                 return Err(PathError::new(
                     &field,
                     &format!("is {farthest_mm} mm away"),
@@ -185,7 +191,7 @@ impl PressPath {
             if pair[1].time_s <= pair[0].time_s {
                 let field = format!("poses[{}].time_s", index + 1);
                 let problem = format!("is {} s after {} s", pair[1].time_s, pair[0].time_s);
-                return Err(PathError::new(&field, &problem, "let times increase"));
+                return Err(PathError::new(&field, &problem, "give increasing times"));
             }
         }
         if let Some(rate_hz) = self.rate_hz {
@@ -241,7 +247,7 @@ impl PressPath {
         Ok(())
     }
 
-    /// All frames, in time.
+    /// All frames, in the order of time.
     #[must_use]
     pub fn frames(&self) -> Vec<PathFrame> {
         let Some(rate_hz) = self.rate_hz else {
@@ -254,13 +260,14 @@ impl PressPath {
             .collect()
     }
 
-    /// Whether a waypoint asks for a force.
+    /// Whether any waypoint asks for a force.
     #[must_use]
     pub fn asks_for_force(&self) -> bool {
         self.poses.iter().any(|pose| pose.force_n.is_some())
     }
 
-    /// The moment at a time from the first waypoint's on; the last one's for ever after.
+    /// The frame at a time from the first waypoint on. After the last waypoint it is that of the
+    /// last one.
     fn at(&self, time_s: f64) -> PathFrame {
         let after = self.poses.partition_point(|pose| pose.time_s < time_s);
         let to = self.poses[after.min(self.poses.len() - 1)];

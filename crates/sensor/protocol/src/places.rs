@@ -1,39 +1,40 @@
-//! Where to press.
+//! Locations of presses.
 
 use serde::{Deserialize, Serialize};
 use twintac_random::RandomStream;
 
 use crate::{PlanError, Range, Target};
 
-/// Most presses that one indenter can be planned to do.
+/// Largest number of presses with one indenter.
 const MOST_PRESSES: u64 = 1_000_000;
 
-/// Farthest place from the gel's origin, mm.
+/// Largest distance of a location from the gel's origin, mm.
 const FARTHEST_MM: f64 = 1000.0;
 
-/// Where to press.
+/// Locations of presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Places {
-    /// A regular grid over a rectangle, its border included, x running fastest.
+    /// A regular grid over a rectangle, including its border; x runs fastest.
     Grid {
         /// The rectangle.
         #[serde(flatten)]
         area: Area,
-        /// Places along x and y.
+        /// Number of locations along x and y.
         count: [u32; 2],
     },
-    /// Places drawn evenly from a rectangle, others for each indenter.
+    /// Random locations, uniform in a rectangle, different for each indenter.
     Random {
         /// The rectangle.
         #[serde(flatten)]
         area: Area,
-        /// Places an indenter.
+        /// Number of locations for each indenter.
         count: u32,
     },
     /// Above taxels.
     Taxels {
-        /// Which, in this order; default all, in the order of the sensor description.
+        /// Names of the taxels, in this order. Default: all, in the order of the sensor
+        /// description.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         names: Option<Vec<String>>,
     },
@@ -42,13 +43,13 @@ pub enum Places {
 /// A rectangle in the gel's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Area {
-    /// From and to along x, mm.
+    /// First and last x, mm.
     pub x_mm: [f64; 2],
-    /// From and to along y, mm.
+    /// First and last y, mm.
     pub y_mm: [f64; 2],
 }
 
-/// Places on a sensor.
+/// Locations on a given sensor.
 pub(crate) enum Spots<'a> {
     Known(Vec<[f64; 2]>),
     Drawn(&'a Area, u32),
@@ -62,7 +63,7 @@ impl Spots<'_> {
         }
     }
 
-    /// One of them, mm.
+    /// The location with this index, mm.
     pub(crate) fn at(&self, index: u32, random: &mut RandomStream) -> [f64; 2] {
         match self {
             Self::Known(places_mm) => places_mm[index as usize],
@@ -117,7 +118,8 @@ impl Places {
         })
     }
 
-    /// What is wrong with them when they are pressed this often: the field, counted from where they stand, the problem and a hint.
+    /// What is wrong with the locations if each is pressed `repeats` times: the field relative to
+    /// the table, the problem and a hint.
     pub(crate) fn problem(&self, repeats: u32) -> Option<(String, String, String)> {
         let wrong =
             |field: &str, problem: String, hint: &str| Some((field.to_owned(), problem, hint.to_owned()));
@@ -132,7 +134,7 @@ impl Places {
         {
             let is_near = low.abs().max(high.abs()) <= FARTHEST_MM;
             if !is_near {
-                let hint = format!("give places within {FARTHEST_MM} mm of the gel's origin");
+                let hint = format!("give locations within {FARTHEST_MM} mm of the gel's origin");
                 return wrong(field, format!("runs from {low} to {high}"), &hint);
             }
             if low > high {
@@ -149,13 +151,13 @@ impl Places {
             } else {
                 "places.names"
             };
-            return wrong(field, "is zero".to_owned(), "plan at least one place");
+            return wrong(field, "is zero".to_owned(), "plan at least one location");
         }
         if repeats == 0 {
             return wrong("repeats", "is zero".to_owned(), "press at least once");
         }
         if n_places.saturating_mul(u64::from(repeats)) > MOST_PRESSES {
-            let problem = format!("makes {n_places} places, pressed {repeats} times");
+            let problem = format!("makes {n_places} locations, each pressed {repeats} times");
             let hint = format!("keep to {MOST_PRESSES} presses an indenter");
             return Some(("places.count".to_owned(), problem, hint));
         }

@@ -6,19 +6,20 @@ use serde::{Deserialize, Serialize};
 /// A straight press: approach, hold, retreat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PressPlan {
-    /// Unique in its protocol: `<indenter>#<number>`.
+    /// Unique in its protocol: `<part>-<indenter>#<number>`; without the part's name if it has
+    /// none.
     pub name: String,
     /// Name of the indenter in the sensor description.
     pub indenter: String,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// x of the indenter's origin in the gel's frame, mm.
     pub x_mm: f64,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// y of the indenter's origin in the gel's frame, mm.
     pub y_mm: f64,
-    /// Tilt and spin of the indenter.
+    /// Tilt and yaw of the indenter.
     pub rotation: DQuat,
-    /// Height above first touch at which the press starts and ends, mm.
+    /// Height above the first touch at which the press starts and ends, mm.
     pub clearance_mm: f64,
-    /// Depth below first touch, mm.
+    /// Depth below the first touch, mm.
     pub depth_mm: f64,
     /// Speed of approach and retreat, mm/s.
     pub speed_mm_per_s: f64,
@@ -27,8 +28,8 @@ pub struct PressPlan {
 }
 
 impl PressPlan {
-    /// Time (s) and depth below first touch (mm, negative above) at a frame rate, from the start to the end
-    /// of the press.
+    /// Time, s, and depth below the first touch, mm (negative above), at a frame rate, from the
+    /// start to the end of the press.
     #[must_use]
     pub fn trajectory(&self, rate_hz: f64) -> Vec<(f64, f64)> {
         let travel_s = (self.clearance_mm + self.depth_mm) / self.speed_mm_per_s;

@@ -1,4 +1,4 @@
-//! The protocol as people write it.
+//! The protocol, in the form of the file.
 
 use std::ops::Range;
 
@@ -8,15 +8,16 @@ use twintac_config::ConfigError;
 use crate::part::Series;
 use crate::{Load, LoadPlan, Part, Places, PlanError, PressPlan, Target};
 
-/// What is pressed, and what is put on the gel.
+/// Presses to a depth, and weights put on the gel.
 ///
-/// A file is one [`Part`], or has a summary and lists of `[[parts]]` and `[[loads]]`, each with a name.
+/// A file is either a single [`Part`], or has a summary and the lists `[[parts]]` and `[[loads]]`,
+/// whose entries have names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
-    /// What the protocol is for.
+    /// Its purpose.
     pub summary: String,
-    /// Presses to a depth, kind by kind.
+    /// Presses to a depth, by kind.
     #[serde(default)]
     pub parts: Vec<Part>,
     /// Weights put on the gel.
@@ -24,7 +25,7 @@ pub struct Protocol {
     pub loads: Vec<Load>,
 }
 
-/// What tells a file of parts from a file that is one.
+/// Distinguishes a file with lists from a file that is a single part.
 #[derive(Deserialize)]
 struct Lists {
     parts: Option<serde::de::IgnoredAny>,
@@ -33,7 +34,7 @@ struct Lists {
 
 const PLAIN: &str = "give each part and load a name of its own, of letters, digits and dashes";
 
-/// Whether files and folders can bear a name.
+/// Whether a name is valid for files and folders.
 fn is_plain(name: &str) -> bool {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     !name.is_empty() && name.chars().all(is_plain)
@@ -85,7 +86,8 @@ impl Protocol {
         Ok(document.value)
     }
 
-    /// The same with so many presses of each indenter, in parts whose places are drawn.
+    /// The same protocol with `n_places` random locations for each indenter, in parts with random
+    /// locations.
     #[must_use]
     pub fn with_random_places(mut self, n_places: u32) -> Self {
         for part in &mut self.parts {
@@ -96,10 +98,11 @@ impl Protocol {
         self
     }
 
-    /// The presses on a sensor: for each part and each indenter, the whole list of places as often as it is repeated.
+    /// The presses on a sensor: for each part and each indenter the whole list of locations, as
+    /// often as it is repeated.
     ///
     /// # Errors
-    /// An indenter or a taxel that the sensor does not have.
+    /// The sensor does not have an indenter or a taxel that the protocol names.
     pub fn plan(&self, target: &Target, seed: u64) -> Result<Vec<PressPlan>, PlanError> {
         let series = self.series(target)?;
         let plans = series
@@ -108,11 +111,12 @@ impl Protocol {
         Ok(plans.collect())
     }
 
-    /// Some of the same presses, by their place in another order: the first press of each part and indenter, the second of each, and so on. Any stretch of that
-    /// order has a press of every indenter, and only the stretch is planned.
+    /// A range of the same presses in another order: the first press of each part and indenter,
+    /// then the second of each, and so on. So a long enough range has presses of every indenter.
+    /// Only the range is planned.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan).
+    /// See [`plan`](Self::plan).
     pub fn plan_in_turn(
         &self,
         target: &Target,
@@ -130,10 +134,10 @@ impl Protocol {
             .collect())
     }
 
-    /// How many presses there are on a sensor.
+    /// Number of presses on a sensor.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan).
+    /// See [`plan`](Self::plan).
     pub fn n_presses(&self, target: &Target) -> Result<usize, PlanError> {
         let series = self.series(target)?;
         Ok(series.iter().map(|series| series.count() as usize).sum())
@@ -147,10 +151,10 @@ impl Protocol {
         Ok(all)
     }
 
-    /// The weights put on a sensor, in the same order.
+    /// The loads on a sensor, in the same order as [`plan`](Self::plan).
     ///
     /// # Errors
-    /// As [`plan`](Self::plan).
+    /// See [`plan`](Self::plan).
     pub fn loads(&self, target: &Target, seed: u64) -> Result<Vec<LoadPlan>, PlanError> {
         let plans: Result<Vec<_>, _> = self.loads.iter().map(|load| load.plan(target, seed)).collect();
         Ok(plans?.concat())
@@ -222,7 +226,7 @@ mod tests {
         assert_eq!(speeds, [1.0, 2.0, 5.0]);
         let nothing = PAPER.replace("[1.0, 2.0, 5.0]", "[]");
         let error = Protocol::parse("paper.toml", &nothing).unwrap_err().to_string();
-        assert!(error.contains("speed_mm_per_s` is one of nothing"), "{error}");
+        assert!(error.contains("speed_mm_per_s` has an empty `one_of`"), "{error}");
     }
 
     #[test]
@@ -320,7 +324,7 @@ mod tests {
             ("clearance_mm", "1e300"),
             ("clearance_mm", "nan"),
         ] {
-            let error = set(DEMO, field, value); // an element of a list has its number
+            let error = set(DEMO, field, value); // elements of a list have their number
             assert!(error.field.starts_with(field), "{value}: {error}");
         }
         let deep = DEMO.replace("depth_mm = [0.6, 1.6]", "depth_mm = [0.6, 50.0]");

@@ -1,26 +1,26 @@
-//! A number, a range to draw it from, or a few to choose from.
+//! A number, a range or a choice.
 
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use twintac_random::RandomStream;
 
-/// One number, two between which a press's value is drawn evenly, or a few of which one is drawn.
+/// A fixed number, a range with a uniform distribution, or a choice with equal probabilities.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number, [from, to] or { one_of = [...] }")]
 pub enum Range {
-    /// Always the same.
+    /// A fixed number.
     Fixed(f64),
-    /// Drawn between the two.
+    /// Uniform between the two numbers.
     Between([f64; 2]),
-    /// One of them, each as likely as the next.
+    /// One of the numbers, with equal probabilities.
     OneOf(OneOf),
 }
 
-/// A few numbers.
+/// The numbers of a choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OneOf {
-    /// The numbers; one or more.
+    /// The numbers; at least one.
     one_of: Vec<f64>,
 }
 
@@ -59,12 +59,12 @@ impl Range {
         }
     }
 
-    /// What is wrong with it if nothing may be less than the first of two numbers or more than the second: the problem and a hint.
+    /// What is wrong if the values must lie between the two numbers: the problem and a hint.
     pub(crate) fn problem(&self, [least, most]: [f64; 2]) -> Option<(String, String)> {
         let [low, high] = self.ends();
         if matches!(self, Self::OneOf(OneOf { one_of }) if one_of.is_empty()) {
             return Some((
-                "is one of nothing".to_owned(),
+                "has an empty `one_of`".to_owned(),
                 "give one number or more".to_owned(),
             ));
         }

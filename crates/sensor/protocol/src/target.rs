@@ -1,21 +1,21 @@
-//! What a protocol presses with, and above what.
+//! The indenters and taxels that a protocol is planned for.
 
 use serde::{Deserialize, Serialize};
 
-/// What a protocol must know of the sensor that it is planned for.
+/// What planning a protocol needs to know of a sensor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Target {
-    /// Names of the indenters that there are.
+    /// Names of the sensor's indenters.
     pub indenters: Vec<String>,
-    /// Name of each taxel, and its place in the gel's plane, mm.
+    /// Name of each taxel, and its position in the gel's plane, mm.
     pub taxels: Vec<(String, [f64; 2])>,
 }
 
-/// Which indenters press.
+/// The indenters that press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a list of names or \"all\"")]
 pub enum Indenters {
-    /// Those named, in this order.
+    /// The named ones, in this order.
     Named(Vec<String>),
     /// The word `all`: every indenter of the sensor description.
     All(AllWord),
@@ -33,16 +33,16 @@ pub enum AllWord {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the protocol presses {how} `{asked}`, the sensor's description has {known}")]
 pub struct PlanError {
-    /// `with` an indenter or `above` a taxel.
+    /// `with` for an indenter, `above` for a taxel.
     pub how: &'static str,
     /// The indenter or taxel that the protocol names.
     pub asked: String,
-    /// Those that there are.
+    /// The ones that the sensor has.
     pub known: String,
 }
 
 impl Indenters {
-    /// Their names.
+    /// The names of the indenters.
     pub(crate) fn named<'a>(&'a self, target: &'a Target) -> Result<&'a [String], PlanError> {
         let names = match self {
             Self::All(_) => &target.indenters,
@@ -58,7 +58,7 @@ impl Indenters {
         })
     }
 
-    /// What is wrong with them: the field, counted from where they stand, the problem and a hint.
+    /// What is wrong: the field relative to the table, the problem and a hint.
     pub(crate) fn problem(&self) -> Option<(String, String, &'static str)> {
         let Self::Named(names) = self else {
             return None;

@@ -1,15 +1,16 @@
-//! Recordings of the same sensor as one.
+//! Joins recordings of the same sensor.
 
 use std::collections::BTreeSet;
 
 use crate::{Recording, RecordingError};
 
 impl Recording {
-    /// Adds the presses of another recording. One whose name is taken gets a number, as in `name (2)`.
+    /// Appends the presses of another recording. A press whose name exists gets a number, as in
+    /// `name (2)`.
     ///
     /// # Errors
     ///
-    /// [`RecordingError::Mixed`]: sensor, taxels or provenance differ. Nothing is added then.
+    /// [`RecordingError::Mixed`]: sensor, taxels or provenance differ. Nothing is appended then.
     pub fn append(&mut self, next: Self) -> Result<(), RecordingError> {
         self.expect_alike(&next)?;
         let names = self.presses.iter().map(|press| press.name.clone());
@@ -27,7 +28,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Whether presses of both can stand in one recording.
+    /// Checks that presses of both can be in one recording.
     pub(crate) fn expect_alike(&self, next: &Self) -> Result<(), RecordingError> {
         let facts = |recording: &Self| {
             [
@@ -96,12 +97,15 @@ mod tests {
         };
         differs(
             |next| next.sensor = "tip".to_owned(),
-            "sensor `tip`, those before it `strip`",
+            "sensor `tip`, the previous ones have `strip`",
         );
-        differs(|next| next.taxels.truncate(1), "taxels a, those before it a, b");
+        differs(
+            |next| next.taxels.truncate(1),
+            "taxels a, the previous ones have a, b",
+        );
         differs(
             |next| next.provenance = Provenance::Real,
-            "provenance real, those before it emulated",
+            "provenance real, the previous ones have emulated",
         );
     }
 }

@@ -1,39 +1,40 @@
-//! What every recording promises.
+//! Conditions that every recording meets.
 
 use std::collections::BTreeSet;
 
 use crate::{Press, Recording, RecordingError};
 
-/// Largest distance of a rotation's length from 1.
+/// Largest deviation of a quaternion's length from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
 
-/// Farthest from the gel's origin that an indenter can be, mm: ten times the reach of a robot's arm.
+/// Largest distance of an indenter from the gel's origin, mm: ten times the reach of a robot arm.
 const FARTHEST_MM: f64 = 10_000.0;
 
-/// Largest temperature of a chip, °C, of either sign: solder melts before.
+/// Largest temperature of a chip, °C, of either sign: solder melts below it.
 const HOTTEST_C: f64 = 300.0;
 
 impl Recording {
-    /// Checks that names are unique, vectors have their documented shapes, numbers are finite but for readings that are missing, which are
-    /// not valid, indenters within ten metres of the gel, rotations unit quaternions, and that times increase in every press. Writing and reading
-    /// files check it too.
+    /// Checks that names are unique, that vectors have their documented shapes, that numbers are
+    /// finite (missing readings are NaN and not valid), that indenters are within ten metres of the
+    /// gel, that rotations are unit quaternions, and that times increase in every press. Writing
+    /// and reading files check it too.
     ///
     /// # Errors
     ///
-    /// The first press and frame where that does not hold.
+    /// The first press and frame where a condition is not met.
     pub fn check(&self) -> Result<(), RecordingError> {
         let recording = || "recording".to_owned();
         let mut taxels = BTreeSet::new();
         for taxel in &self.taxels {
             let fresh = taxels.insert(taxel) && !taxel.is_empty();
             expect(fresh, recording, || {
-                format!("taxel name `{taxel}` is empty or there twice")
+                format!("taxel name `{taxel}` is empty or given twice")
             })?;
         }
         let mut names = BTreeSet::new();
         for press in &self.presses {
             expect(names.insert(&press.name), recording, || {
-                format!("press name `{}` is there twice", press.name)
+                format!("press name `{}` is given twice", press.name)
             })?;
             press.check(&self.taxels)?;
         }

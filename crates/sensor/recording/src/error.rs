@@ -1,10 +1,10 @@
-//! What can go wrong with recordings.
+//! Errors of recordings.
 
 use std::path::Path;
 
 use twintac_config::ConfigError;
 
-/// What was expected of a recording and what was found.
+/// Why a recording cannot be read, written or used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
@@ -13,7 +13,7 @@ pub enum RecordingError {
     Read {
         /// The file as the user named it.
         file: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A file could not be written.
@@ -21,13 +21,13 @@ pub enum RecordingError {
     Write {
         /// The file as the user named it.
         file: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The import description is wrong.
     #[error(transparent)]
     Description(#[from] ConfigError),
-    /// A column that the import description names is not in the file.
+    /// A column named in the import description is not in the file.
     #[error("{file}:{line}: no column `{column}`; the file has: {found}")]
     MissingColumn {
         /// The file as the user named it.
@@ -36,10 +36,10 @@ pub enum RecordingError {
         line: u64,
         /// The column that was looked for.
         column: String,
-        /// The columns that are there.
+        /// The columns of the file.
         found: String,
     },
-    /// A line of a CSV file cannot be split into the expected cells.
+    /// A line of a CSV file does not have the expected cells.
     #[error("{file}:{line}: {problem}")]
     Line {
         /// The file as the user named it.
@@ -49,68 +49,68 @@ pub enum RecordingError {
         /// What is wrong with it.
         problem: String,
     },
-    /// A cell of a CSV file, or a number of a bag's message, cannot be used.
+    /// A cell of a CSV file, or a number in a message of a bag, cannot be used.
     #[error("{file}:{line}: column `{column}` {problem}")]
     Cell {
         /// The file as the user named it.
         file: String,
-        /// Line, or number of the topic's message, from 1.
+        /// Line of the file, or number of the message in its topic, from 1.
         line: u64,
         /// Name of the column.
         column: String,
-        /// What is wrong, read after the column's name.
+        /// What is wrong; it follows the column's name.
         problem: String,
     },
-    /// A column that the import description names is not in a bag, or is not what it is for.
+    /// A column named in the import description is not in a bag, or does not suit its purpose.
     #[error("{file}: column `{column}` {problem}")]
     BagColumn {
         /// The file as the user named it.
         file: String,
         /// Name of the column, `/topic:field`.
         column: String,
-        /// What is wrong, and what the bag has; read after the column's name.
+        /// What is wrong, and what the bag contains; it follows the column's name.
         problem: String,
     },
-    /// A bag cannot be read as the import description says.
+    /// A bag cannot be read by the import description.
     #[error("{file}: {problem}")]
     Bag {
         /// The file as the user named it.
         file: String,
-        /// What is wrong with it, and what to do.
+        /// What is wrong, and what to do.
         problem: String,
     },
-    /// What the file says cannot be, in the sense of the import description.
+    /// By the import description, the content of the file is impossible.
     #[error("{file}: {problem}")]
     Implausible {
         /// The file as the user named it.
         file: String,
-        /// What is wrong with it, and what to do.
+        /// What is wrong, and what to do.
         problem: String,
     },
-    /// Nothing in the file is a press, in the sense of the import description if there is one.
+    /// The file contains no press, by the import description if there is one.
     #[error("{file}: found no presses in {rows} rows: {why}")]
     NoPresses {
         /// The file as the user named it.
         file: String,
         /// Rows read.
         rows: usize,
-        /// What was looked for, and what became of it.
+        /// How presses were searched for, and what was found.
         why: String,
     },
-    /// Recordings that were to become one do not belong together.
-    #[error("this recording has {what} {found}, those before it {expected}; take each on its own")]
+    /// Recordings that were to be joined do not match.
+    #[error("this recording has {what} {found}, the previous ones have {expected}; use each on its own")]
     Mixed {
         /// What differs: sensor, taxels or provenance.
         what: &'static str,
-        /// That of the recordings before.
+        /// The value of the recordings before.
         expected: String,
-        /// That of this one.
+        /// The value of this recording.
         found: String,
     },
-    /// The numbers contradict what a [`Recording`](crate::Recording) promises.
+    /// The numbers break a condition of [`Recording`](crate::Recording).
     #[error("{place}: {problem}")]
     Inconsistent {
-        /// The press and, where there is one, the frame.
+        /// The press, and the frame if there is one.
         place: String,
         /// What is wrong with it.
         problem: String,

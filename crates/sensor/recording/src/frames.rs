@@ -2,12 +2,13 @@
 
 use crate::{Provenance, RecordingError};
 
-/// What a sensor read, frame by frame, whatever touched it: a log without poses. All vectors have the same length, `n_frames`.
+/// Frames of a sensor without poses: a log of readings, whatever touched the sensor. All vectors
+/// have the same length, `n_frames`.
 #[derive(Clone, Debug)]
 pub struct Frames {
     /// Name of the sensor description that the frames belong to.
     pub sensor: String,
-    /// Where the numbers come from.
+    /// Provenance of the numbers.
     pub provenance: Provenance,
     /// Taxel names, in the order of every row.
     pub taxels: Vec<String>,
@@ -15,14 +16,15 @@ pub struct Frames {
     pub time_s: Vec<f64>,
     /// Whether frames are known to be missing before this one; `[n_frames]`.
     pub gap_before: Vec<bool>,
-    /// Pressure as the source has it, kPa, absolute where it is a barometer's; NaN where it is missing or cannot be used; `[n_frames][n_taxels]`.
+    /// Pressure as in the source, kPa; absolute for barometers. NaN if it is missing or cannot be
+    /// used; `[n_frames][n_taxels]`.
     pub readings_kpa: Vec<Vec<f64>>,
-    /// Temperatures of the chips, °C; NaN where one is missing; `[n_frames][n_taxels]`.
+    /// Temperatures of the chips, °C; NaN if missing; `[n_frames][n_taxels]`.
     pub temperature_c: Vec<Vec<f64>>,
 }
 
 impl Frames {
-    /// None so far.
+    /// A log without frames.
     #[must_use]
     pub fn new(sensor: &str, provenance: Provenance, taxels: &[String]) -> Self {
         Self {
@@ -36,10 +38,11 @@ impl Frames {
         }
     }
 
-    /// Checks that rows have their documented shapes, numbers are finite but for those that are missing, and times increase.
+    /// Checks that rows have their documented shapes, that numbers are finite or missing (NaN), and
+    /// that times increase.
     ///
     /// # Errors
-    /// [`RecordingError::Inconsistent`]: the first frame where that does not hold.
+    /// [`RecordingError::Inconsistent`]: the first frame where a condition is not met.
     pub fn check(&self) -> Result<(), RecordingError> {
         let (n_frames, n_taxels) = (self.time_s.len(), self.taxels.len());
         let wrong = |frame: usize, problem: String| {

@@ -1,18 +1,19 @@
-//! Readings that did not come: NaN in memory, null in files.
+//! Missing readings: NaN in memory, null in files.
 
 use serde::{Deserialize, Deserializer};
 
-/// Reads rows of readings of which some are null, which become NaN: JSON has no NaN, and `serde_json` writes one as null.
+/// Reads rows of readings in which some are null; null becomes NaN. JSON has no NaN, and
+/// `serde_json` writes it as null.
 ///
 /// # Errors
-/// Anything else than rows of numbers and nulls.
+/// The input is not rows of numbers and nulls.
 pub fn null_as_nan<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Vec<f64>>, D::Error> {
     let rows = Vec::<Vec<Option<f64>>>::deserialize(from)?;
     let row = |row: Vec<Option<f64>>| row.into_iter().map(known_or_nan).collect();
     Ok(rows.into_iter().map(row).collect())
 }
 
-/// The same of rows that may not be there at all.
+/// Like [`null_as_nan`], for rows that may be absent.
 pub(crate) fn some_null_as_nan<'de, D: Deserializer<'de>>(
     from: D,
 ) -> Result<Option<Vec<Vec<f64>>>, D::Error> {

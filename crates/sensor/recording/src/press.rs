@@ -5,26 +5,27 @@ use twintac_shape::Pose;
 
 use crate::Provenance;
 
-/// Presses of one sensor with one origin.
+/// Presses of one sensor, with one provenance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recording {
     /// Name of the sensor description that the presses belong to.
     pub sensor: String,
-    /// Where the numbers come from.
+    /// Provenance of the numbers.
     pub provenance: Provenance,
     /// Taxel names, in the order of every row of readings; the order of the sensor description.
     pub taxels: Vec<String>,
-    /// The presses, in the order in which they happened.
+    /// The presses in chronological order.
     pub presses: Vec<Press>,
 }
 
-/// What drove the indenter.
+/// The controlled quantity of a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Control {
-    /// The pose was prescribed and is known.
+    /// The pose was controlled and is known.
     Pose,
-    /// The force was prescribed and is known; the pose's z is not, and stands where the tip touches the gel.
+    /// The force was controlled and is known. z is not known; it is the height at which the tip
+    /// touches the gel.
     Force,
 }
 
@@ -37,41 +38,45 @@ impl std::fmt::Display for Control {
     }
 }
 
-/// One press. All per-frame vectors have the same length, `n_frames`.
+/// One press. All vectors of frames have the same length, `n_frames`.
 ///
-/// A reading that did not come is NaN and not valid, in memory as in JSON (null) and Parquet (null). Nothing else is NaN. Two presses are
-/// equal where both miss the same readings.
+/// A missing reading is NaN and not valid in memory, and null in JSON and Parquet. Nothing else is
+/// NaN. Two presses with the same missing readings can be equal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Press {
     /// Unique in its recording: `<file stem>#<number>`, the number from 1.
     pub name: String,
-    /// How gel and indenter were mounted on the bench. Presses of one mounting were made with the gel at one height. For presses of a CSV
-    /// file: the file's name without folders. For presses that a bench recorded: the name of the indenter that was mounted.
+    /// The installation of gel and indenter. Presses of one installation were made with the gel at
+    /// one height. For presses of a CSV file: the file's name without its folder. For presses that
+    /// a test setup recorded: the name of the installed indenter.
     pub mounting: String,
     /// Name of the indenter in the sensor description.
     pub indenter: String,
-    /// What drove the indenter.
+    /// The controlled quantity.
     pub control: Control,
     /// Time stamps, s, strictly increasing; `[n_frames]`.
     pub time_s: Vec<f64>,
     /// Pose of the indenter in the gel's frame; `[n_frames]`.
     pub gel_from_indenter: Vec<Pose>,
-    /// Force of the indenter on the gel along -z, N; `[n_frames]`, if it was measured or prescribed.
+    /// Force of the indenter on the gel along -z, N; `[n_frames]`, if it was measured or
+    /// controlled.
     pub force_n: Option<Vec<f64>>,
-    /// Readings above the unloaded baseline, kPa, NaN where one is missing or there is no baseline; `[n_frames][n_taxels]`.
+    /// Readings above the unloaded baseline, kPa. NaN if a reading or the baseline is missing;
+    /// `[n_frames][n_taxels]`.
     #[serde(deserialize_with = "crate::null_as_nan")]
     pub taxels_kpa: Vec<Vec<f64>>,
-    /// Readings as the source gives them, in its own unit, NaN where it gave none; `[n_frames][n_taxels]`.
+    /// Readings as in the source, in its unit. NaN if missing; `[n_frames][n_taxels]`.
     #[serde(deserialize_with = "crate::null_as_nan")]
     pub taxels_raw: Vec<Vec<f64>>,
-    /// Temperatures of the chips, °C, NaN where one is missing; `[n_frames][n_taxels]`, if the source gives any.
+    /// Temperatures of the chips, °C. NaN if missing; `[n_frames][n_taxels]`, if the source has
+    /// any.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "crate::missing::some_null_as_nan"
     )]
     pub temperature_c: Option<Vec<Vec<f64>>>,
-    /// Whether the reading can be used (not clipped, not missing); `[n_frames][n_taxels]`.
+    /// Whether the reading is usable (neither clipped nor missing); `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
 }
 
@@ -103,7 +108,7 @@ impl PartialEq for Press {
     }
 }
 
-/// Whether numbers of frames are equal; one that is missing equals another.
+/// Whether readings are equal; missing readings equal each other.
 fn are_same(readings: &[Vec<f64>], others: &[Vec<f64>]) -> bool {
     let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
     let of_frame =

@@ -1,14 +1,14 @@
-//! Where numbers come from.
+//! Provenance of numbers.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a number comes from. Every file and every result carries it.
+/// Provenance of a number. Every file and every result carries it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Provenance {
     /// Measured on hardware.
     Real,
-    /// Measured on the emulated bench.
+    /// Measured on the emulated test setup.
     Emulated,
     /// Computed by the twin's own simulation.
     Simulated,

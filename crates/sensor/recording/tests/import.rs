@@ -1,4 +1,4 @@
-//! CSV files of made-up benches, good and bad.
+//! CSV files of invented test setups, valid and invalid.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -23,8 +23,8 @@ presses = { split = "return-to-rest" }
 zero = { above_contact_mm = 0.5, window_s = 0.3 }
 "#;
 
-/// A bench that goes down to 3 mm and up again at each place, a step of 0.2 mm every 0.1 s; taxel b sees the same as taxel
-/// a, 0.05 s later.
+/// A test setup that goes down to 3 mm and up again at each location, in steps of 0.2 mm every 0.1
+/// s. Taxel b reads the same as taxel a, 0.05 s later.
 fn bench_csv(places_um: &[f64]) -> String {
     let mut text = "ms,a,b,x,steps\n".to_owned();
     let steps: Vec<f64> = (0..=15)
@@ -68,7 +68,7 @@ fn read(description: &str, csv: &str) -> Result<(Recording, ImportSummary), Reco
     Import::parse("bench.toml", description)?.read_csv(&bench.path("run.csv"))
 }
 
-/// The error, without the folder of the file.
+/// The error without the folder of the file.
 fn error(description: &str, csv: &str) -> String {
     let error = read(description, csv).unwrap_err().to_string();
     error
@@ -110,7 +110,8 @@ fn presses_come_with_poses_zeros_and_lags() {
         assert!((deepest - 5.0).abs() < 1e-12);
         for (frame, pose) in press.gel_from_indenter.iter().enumerate() {
             assert_eq!((pose.position_mm.x, pose.position_mm.y), (x_mm, 0.0));
-            // 5 Pa per 0.001 mm of depth; the lagging taxel agrees once it is read at the right time.
+            // 5 Pa per 0.001 mm of depth. The lagging taxel agrees once it is read at the right
+            // time.
             let expected_kpa = 5.0 * (6.0 - pose.position_mm.z).max(0.0);
             for taxel in 0..2 {
                 let found_kpa = press.taxels_kpa[frame][taxel];
@@ -166,7 +167,7 @@ fn presses_that_the_file_cuts_are_dropped_and_named() {
         "{:?}",
         summary.files[0].warnings
     );
-    // Out of the gel, but not yet at rest: kept.
+    // Out of the gel but not yet at rest: kept.
     let (recording, summary) = read(BENCH, &rows(0, 58)).unwrap();
     assert_eq!(
         (recording.presses.len(), summary.files[0].presses_dropped),
@@ -203,7 +204,7 @@ fn every_wrong_cell_is_named() {
     );
     assert_eq!(
         wrong("200,1", "50,1"),
-        "run.csv:4: column `ms` is 0.05 s after 0.1 s, expected times to increase; if the log was started again, make it two files"
+        "run.csv:4: column `ms` is 0.05 s after 0.1 s, expected times to increase; if the log was started again, split it into two files"
     );
     assert_eq!(
         wrong("200,1", "100,1"),
@@ -254,7 +255,7 @@ fn any_field_can_differ_for_some_files() {
         .unwrap_err();
     let text = mixed.to_string();
     assert!(
-        text.contains("old_left.csv: ") && text.contains("sensor `old-pair`, those before it `pair`"),
+        text.contains("old_left.csv: ") && text.contains("sensor `old-pair`, the previous ones have `pair`"),
         "{text}"
     );
 }
@@ -281,7 +282,7 @@ fn a_column_can_number_the_presses_and_hold_the_force() {
     let force_n = recording.presses[0].force_n.clone().unwrap();
     assert!((force_n[15] - 0.3).abs() < 1e-12);
     assert_eq!(recording.presses[0].control, Control::Pose);
-    // Without a zero, readings are as the file has them.
+    // Without a zero, readings are as in the file.
     assert!(recording.presses[0].taxels_kpa[0][0].abs() < 1e-9);
 }
 

@@ -1,4 +1,4 @@
-//! Readings, force and poses of one recording in three files, each on a clock of its own.
+//! Readings, force and poses of one recording in three files, each with its own clock.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -8,7 +8,7 @@ use std::path::Path;
 use tempfile::TempDir;
 use twintac_recording::{Import, Recording};
 
-/// How deep the indenter is at a true time, s: presses of different depths, mm.
+/// Depth of the indenter at a true time, s: presses of different depths, mm.
 fn depth_mm(time_s: f64) -> f64 {
     let press = (time_s / 5.0).floor();
     let within_s = time_s - 5.0 * press;
@@ -29,7 +29,8 @@ fn pressure_kpa(time_s: f64) -> f64 {
 
 const LENGTH_S: f64 = 240.0;
 
-/// Writes the three files: readings at 55 Hz on the true clock, force at 200 Hz and poses at 100 Hz on clocks of their own.
+/// Writes the three files: readings at 55 Hz on the true clock, force at 200 Hz and poses at 100 Hz
+/// on their own clocks.
 fn write_files(folder: &Path, force_clock: (f64, f64), pose_clock: (f64, f64)) {
     let table = |name: &str, header: &str, rate_hz: f64, row: &dyn Fn(f64) -> String| {
         let mut text = header.to_owned();
@@ -104,7 +105,7 @@ fn three_clocks_are_found_and_joined_to_within_5_ms() {
     let mut worst_s: f64 = 0.0;
     for press in &recording.presses {
         for (frame, time_s) in press.time_s.iter().enumerate() {
-            // A pose is the nearest of those that come each 10 ms.
+            // Poses come every 10 ms; the nearest one is taken.
             let pose_s = press.gel_from_indenter[frame].position_mm.y;
             worst_s = worst_s.max((pose_s - time_s).abs() - 0.005);
             let force = press.force_n.as_ref().unwrap()[frame];
@@ -151,7 +152,7 @@ fn what_cannot_be_joined_is_an_error_with_the_remedy() {
         (
             "columns = [\"f\"]",
             "columns = [\"g\"]",
-            "`join[0].columns` has `g`, which nothing is read of",
+            "`join[0].columns` has `g`, from which nothing is read",
         ),
         ("columns = [\"f\"]", "columns = []", "`join[0].columns` is empty"),
         (
@@ -165,7 +166,7 @@ fn what_cannot_be_joined_is_an_error_with_the_remedy() {
         (
             "split = \"return-to-rest\", rest_mm = 1.0",
             "split = \"row\"",
-            "`join[0]` stands in a description whose own files have no time",
+            "`join[0]` is given in a description whose own files have no time",
         ),
     ] {
         assert!(same.contains(from), "{from}");
@@ -180,7 +181,7 @@ fn what_cannot_be_joined_is_an_error_with_the_remedy() {
     .unwrap();
     let error = read(folder.path(), &description("\"found\"", "\"same\"")).unwrap_err();
     assert!(
-        error.contains("its clock is not found: nothing is alike in the two"),
+        error.contains("its clock is not found: nothing matches in the two"),
         "{error}"
     );
 }

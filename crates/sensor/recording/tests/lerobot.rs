@@ -1,4 +1,4 @@
-//! Recordings as data sets of LeRobot, where readings are missing and names are odd.
+//! Recordings as LeRobot data sets, with missing readings and unusual names.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
-/// 268 frames of two taxels; the first gave nothing in 61 of them.
+/// 268 frames of two taxels; in 61 of them the first has no reading.
 fn recording() -> Recording {
     let n = 268;
     let is_missing = |frame: usize| (100..161).contains(&frame);
@@ -113,7 +113,7 @@ fn names_are_text_in_the_card() {
     );
 }
 
-/// The recording's numbers of frames, its rate, and its card.
+/// The numbers of frames of the recording, its rate, and its card.
 fn rate(recording: &Recording) -> (twintac_recording::LeRobotSummary, Value, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dataset");
@@ -138,7 +138,8 @@ fn frames_that_come_evenly_at_a_whole_rate_stay() {
 
 #[test]
 fn frames_at_another_rate_are_resampled_and_it_is_said() {
-    // 55.56 Hz with jitter; readings rise evenly with time, and the middle second of the second taxel is missing.
+    // 55.56 Hz with jitter; readings rise linearly with time, and one second of the second taxel is
+    // missing in the middle.
     let mut uneven = recording();
     let press = &mut uneven.presses[0];
     for (frame, time_s) in press.time_s.iter_mut().enumerate() {
@@ -160,7 +161,7 @@ fn frames_at_another_rate_are_resampled_and_it_is_said() {
         card.contains("resampled: they came at 55.56 Hz") && card.contains("at 56 Hz"),
         "{card}"
     );
-    // A second of the taxel, and at most one frame more at either end.
+    // One second of the taxel, and at most one more frame at either end.
     let unusable = card
         .split("Taxel S1 has no reading that can be used in ")
         .nth(1)

@@ -1,10 +1,12 @@
-//! Logs as people have them: each with something that stops a strict reader, read or refused with what to do.
+//! Logs as they occur in practice. Each has a feature that stops a strict reader; it is read, or
+//! refused with a hint.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
 use twintac_recording::{FileSummary, Import, Recording, RecordingError, guess_import};
 
-/// Two taxels that rise from 0 to 4 kPa and fall again while the tip goes 2 mm into the gel and back.
+/// Two taxels whose readings rise from 0 to 4 kPa and fall again while the tip goes 2 mm into the
+/// gel and back.
 const BENCH: &str = r#"
 sensor = "pair"
 provenance = "real"
@@ -40,12 +42,12 @@ fn refused(description: &str, log: &str) -> String {
         .map_or(error.clone(), |(_, tail)| tail.to_owned())
 }
 
-/// The description with further fields.
+/// The description with additional fields.
 fn with(fields: &str) -> String {
     format!("{fields}\n{BENCH}")
 }
 
-/// All numbers of the one press.
+/// All numbers of the only press.
 fn numbers(recording: &Recording) -> Vec<(f64, Vec<f64>, f64)> {
     let press = &recording.presses[0];
     let frames = press
@@ -275,20 +277,21 @@ fn what_a_crash_leaves_at_the_end_is_left_out_and_said() {
         assert_eq!(numbers(&recording), whole, "{tail:?}");
         assert!(summary.to_string().contains(note), "{summary}");
     }
-    // In the middle, and at the end of a whole line, it is no crash.
+    // In the middle of a file, and at the end of a complete line, it is not a cut.
     for log in [LOG.replace("3,4,8,2", "3,4,8"), format!("{LOG}7,0,\n")] {
         assert!(refused(BENCH, &log).contains("expected 4 cells, found 3"));
     }
     let twice = refused(BENCH, &format!("{LOG}{LOG}"));
     assert!(
-        twice.starts_with("log.csv:9: ") && twice.contains("make it two files"),
+        twice.starts_with("log.csv:9: ") && twice.contains("split it into two files"),
         "{twice}"
     );
 }
 
 #[test]
 fn the_first_of_several_errors_is_said() {
-    // In the order of lines, and in a line of columns; also where thousands of rows lie between.
+    // Errors are reported in the order of lines, and within a line in the order of columns, also
+    // with thousands of rows between.
     let many = "6,0,0,-1\n".repeat(10_000);
     for (log, line, column) in [
         ("t,a,b,z\n0,0,x,-1\n1,x,x,0\n", 2, "b"),
@@ -320,7 +323,7 @@ fn a_clock_as_text_counts_from_the_first_row() {
         timed(&|s| format!("13:05:{:02}.000", 50 + s)),
         timed(&|s| format!("2026-11-26T13:05:{:02}Z", 50 + s)),
         timed(&|s| format!("2026-11-26 13:05:{:02}.0", 50 + s)),
-        // Over midnight.
+        // Across midnight.
         timed(&|s| {
             if s < 3 {
                 format!("23:59:{}", 57 + s)
@@ -332,7 +335,7 @@ fn a_clock_as_text_counts_from_the_first_row() {
         assert_eq!(numbers(&read(&description, &log).0), plain, "{log}");
         assert!(refused(BENCH, &log).contains("`unit = \"clock\"`"));
     }
-    // A date that goes back is no midnight.
+    // A date that goes back is not midnight.
     let back = timed(&|s| format!("2026-11-{:02} 13:05:00", if s < 3 { 26 + s } else { 20 + s }));
     let error = refused(&description, &back);
     assert!(error.contains("expected times to increase"), "{error}");
@@ -359,7 +362,7 @@ fn a_counter_that_rolls_over_goes_on() {
         error.starts_with("log.csv:6: ") && error.contains("`wraps_at = 4294967296`"),
         "{error}"
     );
-    assert!(refused(BENCH, &LOG.replace("3,4,8", "1.5,4,8")).contains("make it two files"));
+    assert!(refused(BENCH, &LOG.replace("3,4,8", "1.5,4,8")).contains("split it into two files"));
 }
 
 #[test]
@@ -421,7 +424,7 @@ fn quaternions_turn_the_indenter() {
         error.contains("length 1.41") && error.contains("x, y, z, w"),
         "{error}"
     );
-    // Not asked for, they are said to be ignored.
+    // Rotation columns that are not requested are reported as unread.
     let (_, summary) = read(BENCH, &turned("1,0,0,0"));
     assert!(
         summary.to_string().contains("columns not read: qx, qy, qz, qw"),
@@ -462,7 +465,7 @@ fn silent_choices_are_errors() {
             && error.contains("two columns have the name `a`, the 2nd and the 3rd"),
         "{error}"
     );
-    // Of columns that nobody asks for, names may be there twice.
+    // Names of columns that are not requested may occur twice.
     assert!(
         read_bytes(
             BENCH,
@@ -478,7 +481,7 @@ fn silent_choices_are_errors() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("taxels[1].column") && error.contains("another taxel's"),
+        error.contains("taxels[1].column") && error.contains("the column of another taxel"),
         "{error}"
     );
     let error = refused(&BENCH.replace("z_mm = 0.0", "z_mm = 11.0"), LOG);
@@ -517,7 +520,7 @@ fn frames_that_two_presses_share_are_counted() {
     );
 }
 
-/// A log of five presses: `line` writes time, height, force and two absolute readings, Pa.
+/// A log of five presses. `line` writes time, height, force and two absolute readings, Pa.
 fn pressed(header: &str, line: &dyn Fn([f64; 5]) -> String) -> String {
     let row = |row: u32| {
         let z = (f64::from(row % 60) / 30.0 - 1.0).abs() * 4.0 - 1.0;
@@ -529,7 +532,7 @@ fn pressed(header: &str, line: &dyn Fn([f64; 5]) -> String) -> String {
     format!("{header}\n{rows}")
 }
 
-/// Guesses a description, looks for its parts, and imports the log by it.
+/// Guesses a description, checks its parts, and imports the log with it.
 fn guessed(log: &str, parts: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.csv");
@@ -539,7 +542,7 @@ fn guessed(log: &str, parts: &[&str]) {
         assert!(guess.contains(part), "no `{part}` in\n{guess}");
     }
     let import = Import::parse("guessed.toml", &guess).unwrap();
-    // A file without names of columns needs some first.
+    // A file without column names needs names first.
     if guess.contains("columns = [\"") {
         return;
     }
@@ -567,7 +570,7 @@ fn a_guessed_description_reads_the_log_that_it_was_guessed_from() {
             "name = \"p0\", column = \"p0_Pa\"",
         ],
     );
-    // Of a spreadsheet.
+    // From a spreadsheet.
     guessed(
         &pressed("Zeit;ms;z (cm);S1;S2", &|[t, z, _, a, b]| {
             let [ms, z, a, b] = [t * 1e3, z / 10.0, a / 100.0, b / 100.0];
@@ -600,7 +603,7 @@ fn a_guessed_description_reads_the_log_that_it_was_guessed_from() {
             "columns = [\"c1\", \"c2\", \"c3\", \"c4\"]",
         ],
     );
-    // Metres that grow downwards, a quaternion, presses with names.
+    // Metres that increase downwards, a quaternion, presses with names.
     guessed(
         &pressed("t,depth_m,qx,qy,qz,qw,taxel0,taxel1,label", &|[t, z, _, a, b]| {
             let (depth, press) = ((3.0 - z) / 1e3, (t / 1.08) as u32);

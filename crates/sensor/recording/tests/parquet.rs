@@ -1,4 +1,4 @@
-//! Recordings through Parquet files and back.
+//! Recordings written to Parquet files and read back.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -155,7 +155,7 @@ proptest! {
         let (_folder, path) = file();
         recording.write_parquet(&path).unwrap();
         let back = Recording::read_parquet(&path).unwrap();
-        // Debug text tells 0 from -0, which are equal.
+        // Debug text distinguishes 0 from -0, which are equal.
         prop_assert_eq!(format!("{:?}", back), format!("{:?}", recording));
         let json = serde_json::to_string(&recording.presses).unwrap();
         let back: Vec<Press> = serde_json::from_str(&json).unwrap();
@@ -183,7 +183,7 @@ fn every_flipped_byte_is_found_or_does_no_harm() {
         let mut bytes = bytes.clone();
         bytes[place] ^= 0x55;
         std::fs::write(&path, bytes).unwrap();
-        // Only the mark of the checksum itself holds nothing of the recording.
+        // Only the mark of the checksum contains nothing of the recording.
         match Recording::read_parquet(&path) {
             Ok(back) => {
                 assert_eq!(back, recording, "byte {place}");
@@ -280,9 +280,9 @@ fn inconsistent_recordings_are_not_written() {
         "press `bench#2`, frame 0: the rotation's quaternion has length 2, expected 1"
     );
     let error = spoiled(|r| r.presses[1].name = "bench#1".to_owned());
-    assert_eq!(error, "recording: press name `bench#1` is there twice");
+    assert_eq!(error, "recording: press name `bench#1` is given twice");
     let error = spoiled(|r| r.taxels[1] = "S0".to_owned());
-    assert_eq!(error, "recording: taxel name `S0` is empty or there twice");
+    assert_eq!(error, "recording: taxel name `S0` is empty or given twice");
 }
 
 #[test]
@@ -299,7 +299,7 @@ fn a_table_without_presses_is_an_error() {
     assert_eq!(error, expected);
 }
 
-/// A reading that did not come: NaN in memory, null in the table.
+/// A missing reading: NaN in memory, null in the table.
 fn example_with_a_gap() -> Recording {
     let mut recording = example();
     let press = &mut recording.presses[0];

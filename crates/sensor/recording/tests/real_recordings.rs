@@ -1,4 +1,4 @@
-//! Imports the real recordings beside the workspace, where they are.
+//! Imports the real recordings beside the workspace, if they exist.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // also in the helpers of tests
 
@@ -10,7 +10,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
 }
 
-/// The CSV files of one folder of recordings, in order; none where the recordings are absent.
+/// The CSV files of one folder of recordings, in order; empty if the recordings are absent.
 fn files(folder: &str) -> Vec<PathBuf> {
     let folder = root().join("../shared/data").join(folder);
     let Ok(entries) = std::fs::read_dir(&folder) else {
@@ -47,7 +47,7 @@ fn x_mm(press: &Press) -> f64 {
     x_mm
 }
 
-/// Largest depth below the unloaded gel's top, mm.
+/// Largest depth below the top of the unloaded gel, mm.
 fn depth_mm(press: &Press, gel_top_mm: f64) -> f64 {
     press
         .gel_from_indenter
@@ -71,7 +71,8 @@ fn peaks_kpa(presses: &[Press]) -> Vec<f64> {
     peaks_kpa
 }
 
-/// What is known of each strip4 file: sensor, first and last place and step, mm, travel and contact, mm.
+/// Known values of each strip4 file: sensor, first and last location and step, mm, travel and
+/// contact, mm.
 struct Known {
     sensor: &'static str,
     first_x_mm: f64,
@@ -139,7 +140,7 @@ fn strip4_presses_stand_where_and_as_deep_as_the_bench_went() {
                 press.name,
                 x_mm(press)
             );
-            // A press without a hold may turn between two rows, 2 mm/s apart by 60 ms.
+            // A press without a hold may turn between two rows: 60 ms at 2 mm/s.
             let travel_mm = depth_mm(press, known.gel_top_mm) + known.contact_mm;
             let short_mm = known.travel_mm - travel_mm;
             assert!(
@@ -262,7 +263,7 @@ fn array8_rows_are_presses_under_one_weight() {
             (0.95 * largest_kpa..1.15 * largest_kpa).contains(&found_kpa),
             "{found_kpa} kPa"
         );
-        // The taxels of opposite corners of the array read most where they are.
+        // The taxels in opposite corners of the array read most at their own positions.
         let centres_mm = match sensor {
             "array8-ds10" => [(0, 3.29, -9.415), (4, -3.98, 10.965)],
             _ => [(0, 5.29, -14.015), (4, -5.05, 15.645)],
@@ -283,7 +284,7 @@ fn array8_rows_are_presses_under_one_weight() {
                 "s{taxel} reads most at {place_mm}"
             );
         }
-        // The footprint is centred on the gel, so that no place lies outside of it.
+        // The gel's outline is centred, so no location is outside of it.
         let (half_x_mm, half_y_mm) = if sensor == "array8-ds10" {
             (14.25, 15.625)
         } else {

@@ -1,4 +1,4 @@
-//! Temperatures of chips, from logs into files and back; logs of readings alone.
+//! Temperatures of chips, from logs to files and back; logs with readings only.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -9,7 +9,7 @@ use twintac_recording::{
     guess_import,
 };
 
-/// Two taxels that are pressed 2 mm deep, and what they are called.
+/// Two taxels that are pressed 2 mm deep, and their column names.
 const BENCH: &str = r#"
 sensor = "pair"
 provenance = "real"
@@ -48,7 +48,7 @@ fn import(fields: &str, log: &str) -> Recording {
     in_file(log, |path| import.read_csv(path).unwrap().0)
 }
 
-/// Temperatures of the frames of the one press; -1 for one that is missing.
+/// Temperatures in the frames of the only press; -1 if missing.
 fn temperatures_c(recording: &Recording) -> Vec<Vec<f64>> {
     let rows = recording.presses[0].temperature_c.as_ref().unwrap();
     let known = |row: &Vec<f64>| row.iter().map(|c| if c.is_nan() { -1.0 } else { *c }).collect();
@@ -70,7 +70,7 @@ fn each_taxel_has_a_thermometer_of_its_own() {
             [28.0, 29.0]
         ]
     );
-    // A temperature that is missing takes nothing else with it.
+    // A missing temperature affects nothing else.
     assert!(recording.presses[0].valid.iter().flatten().all(|valid| *valid));
 }
 
@@ -105,7 +105,7 @@ fn a_thermometer_that_makes_no_sense_is_refused() {
     };
     let text = refused(&OWN.replace("\"ta\"", "\"a\""));
     assert!(
-        text.contains("taxels[0].temperature") && text.contains("its readings, too"),
+        text.contains("taxels[0].temperature") && text.contains("also the column of its readings"),
         "{text}"
     );
     let text = refused(&format!("temperatures = {{ scale = 0.0 }}\n{NO_OWN}"));
@@ -144,7 +144,7 @@ fn temperatures_are_columns_of_a_file_only_where_there_are_any() {
     both.append(import(NO_OWN, LOG)).unwrap();
     both.write_parquet(&path).unwrap();
     assert_eq!(Recording::read_parquet(&path).unwrap(), both);
-    // JSON, too.
+    // The same for JSON.
     let text = serde_json::to_string(&both).unwrap();
     assert_eq!(serde_json::from_str::<Recording>(&text).unwrap(), both);
     assert_eq!(text.matches("temperature_c").count(), 1);
@@ -163,7 +163,7 @@ fn a_file_that_was_begun_without_temperatures_takes_none() {
     );
 }
 
-/// A bench without a robot: readings, Pa, and temperatures.
+/// A test setup without a robot: readings, Pa, and temperatures.
 const READINGS: &str = r#"
 sensor = "pair"
 provenance = "real"

@@ -1,4 +1,4 @@
-//! The coefficients, as a file.
+//! Temperature coefficients, as a file.
 
 use std::path::Path;
 
@@ -6,47 +6,48 @@ use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, ConfigError, Ranges};
 use twintac_recording::Provenance;
 
-/// How the zeros of a sensor's taxels move with temperature.
+/// Drift of the zeros of a sensor's taxels with temperature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Compensation {
     /// Name of the sensor's description.
     pub sensor: String,
-    /// Where the log came from that it was found in.
+    /// Provenance of the log that the coefficients were found from.
     pub provenance: Provenance,
-    /// One for each taxel that it was found for.
+    /// The taxels with a coefficient.
     pub taxels: Vec<TaxelDrift>,
 }
 
-/// How a taxel's zero moves with temperature.
+/// Drift of a taxel's zero with temperature.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TaxelDrift {
     /// The taxel's name.
     pub name: String,
-    /// By how much its reading rises, untouched, for each kelvin that its chip gets warmer, kPa/K.
+    /// Temperature coefficient, kPa/K: rise of the unloaded reading with the temperature of the
+    /// taxel's chip.
     pub kpa_per_k: f64,
-    /// Between which temperatures that was found, °C.
+    /// Lowest and highest temperature in the log, °C.
     pub between_c: [f64; 2],
-    /// Root mean square of what was left of the log's readings, averaged over some seconds, kPa.
+    /// Root mean square of the residuals of the log's readings, averaged over some seconds, kPa.
     pub remaining_kpa: f64,
 }
 
-/// Why a compensation is of no use for a sensor.
+/// Why a compensation does not fit a sensor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TemperatureError {
-    /// It is of another sensor.
-    #[error("the compensation of temperature is of sensor `{found}`, and these readings are of `{expected}`")]
+    /// It belongs to another sensor.
+    #[error("the temperature compensation is of sensor `{found}`, but these readings are of `{expected}`")]
     OtherSensor {
-        /// Its sensor.
+        /// The sensor of the compensation.
         found: String,
         /// The sensor of the readings.
         expected: String,
     },
     /// A taxel has no coefficient.
     #[error(
-        "the compensation of temperature has no taxel `{0}`; find it in a log in which all taxels have temperatures that change by a kelvin or more"
+        "the temperature compensation has no taxel `{0}`; find it in a log in which all taxels have temperatures that change by a kelvin or more"
     )]
     NoTaxel(String),
 }
@@ -64,7 +65,7 @@ impl Checked for Compensation {
             ranges.that(
                 &format!("taxels[{index}].name"),
                 is_first,
-                || format!("`{}` is there twice", taxel.name),
+                || format!("`{}` is given twice", taxel.name),
                 || "name each taxel once",
             );
         }
@@ -94,15 +95,15 @@ impl Compensation {
     /// Reads a file (TOML).
     ///
     /// # Errors
-    /// A file that cannot be read or is wrong, with line and field.
+    /// The file cannot be read or is wrong; the error names line and field.
     pub fn read(path: &Path) -> Result<Self, ConfigError> {
         twintac_config::read::<Self>(path)?.checked()
     }
 
-    /// Reads the text of such a file, which `file` names in errors.
+    /// Reads the text of such a file. `file` names it in errors.
     ///
     /// # Errors
-    /// What is wrong, with line and field.
+    /// The text is wrong; the error names line and field.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         twintac_config::parse::<Self>(file, text)?.checked()
     }
@@ -110,22 +111,21 @@ impl Compensation {
     /// The text of such a file.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        let head =
-            "# How the zeros of the taxels move with temperature, as `twintac characterize` found it.\n";
-        // Names and finite numbers are always TOML.
+        let head = "# The drift of the taxels' zeros with temperature, found by `twintac characterize`.\n";
+        // Names and finite numbers are always valid TOML.
         format!("{head}{}", toml::to_string(self).unwrap_or_default())
     }
 
-    /// The coefficients of a sensor's taxels, kPa/K, in their order.
+    /// The coefficients of a sensor's taxels, kPa/K, in the sensor's order.
     ///
     /// # Errors
-    /// Another sensor; a taxel without a coefficient.
+    /// The compensation belongs to another sensor, or a taxel has no coefficient.
     pub fn coefficients(&self, sensor: &str, taxels: &[String]) -> Result<Vec<f64>, TemperatureError> {
         let drifts = self.of(sensor, taxels)?;
         Ok(drifts.into_iter().map(|drift| drift.kpa_per_k).collect())
     }
 
-    /// What is known of a sensor's taxels, in their order.
+    /// The entries of a sensor's taxels, in the sensor's order.
     pub(crate) fn of(&self, sensor: &str, taxels: &[String]) -> Result<Vec<&TaxelDrift>, TemperatureError> {
         if self.sensor != sensor {
             return Err(TemperatureError::OtherSensor {

@@ -1,8 +1,12 @@
-//! How the zeros of taxels move with temperature, and readings without that.
+//! Compensates the drift of taxels' zeros with temperature.
 //!
-//! A barometer under gel has a little air, and is soldered to a board: as it warms up, its reading moves though nothing touches it, by
-//! tenths of a kPa for each kelvin. A [`Compensation`] has a coefficient for each taxel, as `twintac characterize` finds it. It is taken off
-//! recorded presses by [`Compensation::apply`], and off frames as they come by a [`Warmth`]:
+//! A barometer under gel contains a little air and is soldered to a board. As it warms up, its
+//! reading drifts by tenths of a kPa for each kelvin although nothing touches it.
+//!
+//! Input is a [`Compensation`], a TOML file with a coefficient in kPa/K for each taxel, as
+//! `twintac characterize` finds it; and the chips' temperatures in °C. Output is readings without
+//! this drift, in kPa. [`Compensation::apply`] subtracts the drift from recorded presses, and a
+//! [`Warmth`] gives it for frames as they arrive:
 //!
 //! ```
 //! use twintac_temperature::{Compensation, Warmth};
@@ -26,6 +30,16 @@
 //! assert!((warmth.drift_kpa(0) - 1.0).abs() < 1e-6 && (warmth.drift_kpa(1) + 0.4).abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # How it works
+//!
+//! The drift of a taxel is its coefficient times the change of its chip's temperature since a
+//! reference: the tare for frames, the first frames of a press for recordings. Temperatures are
+//! averaged, over about two seconds for frames as they arrive and over ten seconds in presses,
+//! because a single temperature is noisy and chips warm up within minutes. A remark says if
+//! temperatures are far outside the range in which the coefficients were found.
+//!
+//! The crate depends on no source of data, no solver and no learning.
 
 mod compensation;
 mod presses;

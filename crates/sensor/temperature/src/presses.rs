@@ -1,4 +1,4 @@
-//! Recorded presses without what temperature did to their zeros.
+//! Temperature compensation of recorded presses.
 
 use twintac_recording::Recording;
 
@@ -7,30 +7,32 @@ use crate::{Compensation, TemperatureError};
 /// Half of the time over which temperatures are averaged, s.
 const HALF_S: f64 = 5.0;
 
-/// Beyond the temperatures that the coefficients were found between, K, from where on a person should know.
+/// If temperatures exceed those of the coefficients' log by more than this, K, a remark says so.
 const BEYOND_K: f64 = 5.0;
 
-/// What became of a recording.
+/// The result of a compensation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compensated {
-    /// Presses of which drift was taken off.
+    /// Number of presses that were compensated.
     pub n_presses: usize,
-    /// Presses without temperatures, which stay as they are.
+    /// Number of presses without temperatures; they are unchanged.
     pub n_without: usize,
-    /// Largest drift that was taken off, kPa.
+    /// Largest drift that was subtracted, kPa.
     pub largest_kpa: f64,
-    /// A sentence each: temperatures far from those that the coefficients were found between.
+    /// One sentence for each remark: temperatures far outside the range of the coefficients' log.
     pub remarks: Vec<String>,
 }
 
 impl Compensation {
-    /// Takes the drift of the zeros within each press off its readings (`taxels_kpa`; raw ones stay). The zero of a press is as warm as its first
-    /// frames, so presses that last seconds change by little, and long ones by what their zeros drift.
+    /// Subtracts the drift of the zeros within each press from its readings (`taxels_kpa`; raw
+    /// readings stay). The zero of a press has the temperature of its first frames. Presses of a
+    /// few seconds therefore change little, and long ones by the drift of their zeros.
     ///
-    /// Presses are then as if their chips had stayed as warm as at first, and their temperatures say so: to compensate once more changes nothing.
+    /// The chips then count as having kept their first temperature: the press's temperatures are
+    /// set to it, so a second compensation changes nothing.
     ///
     /// # Errors
-    /// A recording of another sensor; a taxel without a coefficient. Nothing is changed then.
+    /// The recording is of another sensor, or a taxel has no coefficient. Nothing is changed then.
     pub fn apply(&self, recording: &mut Recording) -> Result<Compensated, TemperatureError> {
         let drifts = self.of(&recording.sensor, &recording.taxels)?;
         let mut done = Compensated::default();
@@ -63,7 +65,7 @@ impl Compensation {
         }
         if lowest_c < -BEYOND_K || highest_c > BEYOND_K {
             done.remarks.push(format!(
-                "temperatures go {:.0} K beyond those that the compensation was found between",
+                "temperatures are up to {:.0} K outside of the range in which the compensation was found",
                 highest_c.max(-lowest_c)
             ));
         }
@@ -71,7 +73,7 @@ impl Compensation {
     }
 }
 
-/// A taxel's temperatures, each averaged over the frames around it, °C; NaN where there is none.
+/// A taxel's temperatures, each averaged over the frames around it, °C. NaN if there are none.
 fn smooth(time_s: &[f64], temperature_c: &[Vec<f64>], taxel: usize) -> Vec<f64> {
     let (mut from, mut to) = (0, 0);
     let (mut sum_c, mut count) = (0.0, 0_u32);
@@ -107,7 +109,7 @@ mod tests {
     use super::*;
     use crate::TaxelDrift;
 
-    /// An hour at one frame a second, in which the chips get 4 K warmer and nothing touches.
+    /// One hour at one frame per second, in which the chips warm up by 4 K and nothing touches.
     fn warming(noise_c: f64) -> Recording {
         let n = 3600;
         let warmed_k = |frame: usize| 4.0 * (1.0 - (-(frame as f64) / 1200.0).exp());
@@ -174,7 +176,7 @@ mod tests {
             .fold(0.0, |worst: f64, kpa| worst.max(kpa.abs()));
         assert!(worst_kpa < 0.05, "{worst_kpa}");
         assert_eq!(press.taxels_raw, before.presses[0].taxels_raw);
-        // Once more changes nothing.
+        // A second compensation changes nothing.
         let once = recording.clone();
         let again = compensation([25.0, 29.0]).apply(&mut recording).unwrap();
         assert!(again.largest_kpa < 1e-12, "{again:?}");
@@ -220,6 +222,6 @@ mod tests {
         assert_eq!(recording, before);
         let mut recording = warming(0.0);
         let done = compensation([15.0, 20.0]).apply(&mut recording).unwrap();
-        assert!(done.remarks[0].contains("9 K beyond"), "{done:?}");
+        assert!(done.remarks[0].contains("9 K outside"), "{done:?}");
     }
 }

@@ -1,14 +1,17 @@
-//! How much warmer than at the tare chips are, frame by frame.
+//! Temperature changes of the chips since the tare, frame by frame.
 
-/// Time in which a temperature is averaged, s: chips warm up within minutes, and a single temperature has noise.
+/// Averaging time of temperatures, s: chips warm up within minutes, and a single temperature is
+/// noisy.
 const TIME_S: f64 = 2.0;
 
-/// What temperature has done to the zeros of a sensor's taxels since its tare, as frames come.
+/// The drift of a sensor's zeros since its tare, computed frame by frame from the chips'
+/// temperatures.
 ///
-/// Temperatures are averaged over about two seconds. A taxel that gives none keeps the last one it gave.
+/// Temperatures are averaged over about two seconds. A taxel without a temperature keeps its last
+/// one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warmth {
-    /// kPa/K, of each taxel; none where nothing is known.
+    /// Temperature coefficient of each taxel, kPa/K; empty if unknown.
     kpa_per_k: Vec<f64>,
     chips: Vec<Chip>,
     last_s: Option<f64>,
@@ -17,14 +20,15 @@ pub struct Warmth {
 /// A chip's temperatures, °C.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Chip {
-    /// Averaged, with the time that the average is over so far, s.
+    /// The averaged temperature, and the time that the average covers so far, s.
     smooth_c: Option<(f64, f64)>,
     at_tare_c: Option<f64>,
 }
 
 impl Warmth {
-    /// With coefficients of the taxels, kPa/K, as [`Compensation::coefficients`](crate::Compensation::coefficients) gives them; with none, it
-    /// follows temperatures and takes nothing off.
+    /// A compensation with coefficients of the taxels, kPa/K, from
+    /// [`Compensation::coefficients`](crate::Compensation::coefficients). With an empty list it
+    /// follows temperatures and subtracts nothing.
     #[must_use]
     pub fn new(kpa_per_k: Vec<f64>) -> Self {
         Self {
@@ -33,7 +37,8 @@ impl Warmth {
         }
     }
 
-    /// Takes the temperatures of a frame, °C, of each taxel, at a time, s. A frame that is not later than the last one changes nothing.
+    /// Takes the temperatures of the taxels in a frame, °C, at a time, s. A frame that is not later
+    /// than the last one is ignored.
     pub fn update(&mut self, time_s: f64, temperatures_c: &[Option<f64>]) {
         let step_s = match self.last_s {
             Some(last_s) if time_s <= last_s => return,
@@ -48,7 +53,7 @@ impl Warmth {
             };
             chip.smooth_c = Some(match chip.smooth_c {
                 None => (temperature_c, step_s),
-                // The mean of all at first, an exponential one later.
+                // At first the mean of all values, later an exponential average.
                 Some((smooth_c, over_s)) => {
                     let over_s = (over_s + step_s).min(TIME_S.max(step_s));
                     let part = if over_s > 0.0 { step_s / over_s } else { 1.0 };
@@ -58,14 +63,14 @@ impl Warmth {
         }
     }
 
-    /// Counts warmth from now on.
+    /// Takes the current temperatures as reference.
     pub fn tare(&mut self) {
         for chip in &mut self.chips {
             chip.at_tare_c = chip.smooth_c.map(|(smooth_c, _)| smooth_c);
         }
     }
 
-    /// By how much a taxel's zero has moved since the tare, kPa; 0 where nothing is known.
+    /// Drift of a taxel's zero since the tare, kPa; 0 if unknown.
     #[must_use]
     pub fn drift_kpa(&self, taxel: usize) -> f64 {
         let warmer_k = self.chips.get(taxel).and_then(Chip::warmer_k);
@@ -75,14 +80,15 @@ impl Warmth {
             .map_or(0.0, |(kpa_per_k, warmer_k)| kpa_per_k * warmer_k)
     }
 
-    /// How much warmer than at the tare the chip is that changed most, K; below zero if it is colder.
+    /// Change since the tare of the chip whose temperature changed most, K; negative if it is
+    /// colder.
     #[must_use]
     pub fn warmer_k(&self) -> Option<f64> {
         let changes = self.chips.iter().filter_map(Chip::warmer_k);
         changes.max_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
-    /// Whether something is taken off.
+    /// Whether there are coefficients to subtract a drift.
     #[must_use]
     pub fn compensates(&self) -> bool {
         !self.kpa_per_k.is_empty()
@@ -106,7 +112,7 @@ mod tests {
         let at = |frame: u32| f64::from(frame) / 50.0;
         let mut worst_kpa: f64 = 0.0;
         for frame in 0..180_000 {
-            // Four kelvins an hour, eight kPa.
+            // 4 K per hour, 8 kPa.
             let true_k = 4.0 / 3600.0 * at(frame);
             warmth.update(at(frame), &[Some(25.0 + true_k + noise(frame))]);
             if frame == 31 {
@@ -129,7 +135,7 @@ mod tests {
         warmth.update(20.0, &[Some(23.0), Some(31.0)]);
         assert_eq!((warmth.drift_kpa(0), warmth.drift_kpa(1)), (3.0, 0.0));
         assert_eq!(warmth.warmer_k(), Some(3.0));
-        // A frame once more, or one of before.
+        // A repeated frame, or an earlier one.
         warmth.update(20.0, &[Some(90.0), None]);
         warmth.update(19.0, &[Some(90.0), None]);
         assert_eq!((warmth.drift_kpa(0), warmth.drift_kpa(7)), (3.0, 0.0));

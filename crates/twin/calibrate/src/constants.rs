@@ -1,4 +1,4 @@
-//! The constants of a material by the names that files have for them, whatever its model.
+//! The constants of a material by the names that they have in files, for any model.
 
 use serde_json::{Map, Value};
 use twintac_softbody::Material;
@@ -29,12 +29,13 @@ fn add_names(name: String, value: &Value, names: &mut Vec<String>) {
     }
 }
 
-/// A constant; none if the material has no such.
+/// The value of a constant; `None` if the material does not have it.
 pub(crate) fn get(material: &Material, name: &str) -> Option<f64> {
     Value::Object(table(material)).pointer(&pointer(name))?.as_f64()
 }
 
-/// The material with other constants. What it does not have, or is not a number, is ignored.
+/// The material with other constants. Names that the material does not have, or that are not
+/// numbers, are ignored.
 pub(crate) fn with<'a>(material: &Material, constants: impl IntoIterator<Item = (&'a str, f64)>) -> Material {
     let mut table = Value::Object(table(material));
     for (name, value) in constants {
@@ -58,7 +59,7 @@ pub(crate) fn with<'a>(material: &Material, constants: impl IntoIterator<Item = 
     }
 }
 
-/// As in a file: the model's constants beside the rest.
+/// The material as in a file: the constants of the model beside the other fields.
 fn table(material: &Material) -> Map<String, Value> {
     let mut table = Map::new();
     if let Ok(Value::Object(mut fields)) = serde_json::to_value(material) {

@@ -10,12 +10,13 @@ use crate::CalibrateError;
 pub enum Quantity {
     /// Force of the indenter on the gel along -z, N.
     Force,
-    /// Reading of a taxel above its baseline, kPa: the pressure at its port times a gain that is its own. By index.
+    /// Reading of a taxel above its baseline, kPa: the pressure at its port times the taxel's gain.
+    /// By index.
     Taxel(usize),
 }
 
 impl Quantity {
-    /// The taxel that it belongs to, if any.
+    /// Index of the taxel; `None` for a force.
     #[must_use]
     pub fn taxel(self) -> Option<usize> {
         match self {
@@ -30,28 +31,29 @@ impl Quantity {
 pub struct Signal {
     /// What was measured.
     pub quantity: Quantity,
-    /// The numbers, in N or kPa; NaN where there is no usable value. `[n_samples]`
+    /// The values, in N or kPa; NaN where there is no usable value; `[n_samples]`.
     pub values: Vec<f64>,
 }
 
-/// One press, as it was measured.
+/// One measured press.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// A name of its own.
+    /// A name that no other curve has.
     pub name: String,
     /// Shape of the indenter.
     pub shape: Shape,
     /// Coulomb's coefficient of friction between gel and indenter, as described.
     pub friction: f64,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// x of the indenter's origin in the gel's plane, mm.
     pub x_mm: f64,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// y of the indenter's origin in the gel's plane, mm.
     pub y_mm: f64,
-    /// Tilt and spin of the indenter.
+    /// Tilt and yaw of the indenter.
     pub rotation: DQuat,
-    /// Time, s, increasing; `[n_samples]`. For an elastic gel only the order of the samples matters.
+    /// Time, s, increasing; `[n_samples]`. For an elastic gel only the order of the samples
+    /// matters.
     pub time_s: Vec<f64>,
-    /// Depth below first touch, mm, as recorded; negative above the gel. `[n_samples]`
+    /// Depth below first touch, mm, as recorded; negative above the gel; `[n_samples]`.
     pub depth_mm: Vec<f64>,
     /// The signals measured along the press.
     pub signals: Vec<Signal>,
@@ -77,7 +79,7 @@ impl Curve {
             (0..n).find(|&row| !(self.time_s[row].is_finite() && self.depth_mm[row].is_finite()))
         {
             return refuse(format!(
-                "sample {} has a time or depth that is no number",
+                "sample {} has a time or depth that is not a number",
                 row + 1
             ));
         }

@@ -1,17 +1,17 @@
-//! The errors of a fit.
+//! Errors of a fit.
 
-/// A fit that can't be made.
+/// A fit that cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// A parameter that does not exist.
     #[error("there is no parameter `{name}`; with the material as it is described there are {known}")]
     Parameter {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The names that exist.
         known: String,
     },
-    /// A parameter that this fit can't have.
+    /// A parameter that this fit cannot vary.
     #[error("`{name}` can't be free: {reason}")]
     NotFree {
         /// The parameter.
@@ -27,15 +27,17 @@ pub enum CalibrateError {
         /// What is wrong with it.
         problem: String,
     },
-    /// Not more usable samples than unknowns.
-    #[error("{found} usable samples can't tell {unknowns} unknowns; expected more samples than unknowns")]
+    /// The number of usable samples does not exceed the number of unknowns.
+    #[error(
+        "{found} usable samples cannot determine {unknowns} unknowns; expected more samples than unknowns"
+    )]
     TooFew {
         /// Usable samples of all curves.
         found: usize,
         /// Unknowns.
         unknowns: usize,
     },
-    /// A press that could not be simulated with the initial values.
+    /// A press that cannot be simulated with the initial values.
     #[error("{curve}: {error}")]
     Simulate {
         /// Name of the curve.

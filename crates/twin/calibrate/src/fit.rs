@@ -14,7 +14,8 @@ use crate::{CalibrateError, FitSettings, Parameter};
 /// Correlation of neighbouring residuals above which they are not noise.
 const NOT_NOISE: f64 = 0.5;
 
-/// Standard deviation of the residuals, over the largest measured value, above which the fit is not the gel.
+/// Standard deviation of the residuals over the largest measured value, above which the model does
+/// not describe the gel.
 const TOO_MUCH: f64 = 0.05;
 
 /// Correlation of two unknowns above which a warning is given.
@@ -25,48 +26,50 @@ const CORRELATED: f64 = 0.98;
 pub struct FittedUnknown {
     /// Name and owner, with its unit: `shear_modulus_kpa`, `depth_offset_mm of press 1`.
     pub name: String,
-    /// What it is, without its owner.
+    /// The parameter, without its owner.
     pub parameter: Parameter,
     /// Value that the fit started from.
     pub start: f64,
     /// Value found.
     pub value: f64,
-    /// Ends of the 95 % confidence interval; infinite where the data do not determine the value.
+    /// Ends of the 95 % confidence interval. They are infinite where the data do not determine the
+    /// value.
     pub interval_95: [f64; 2],
-    /// Whether the data determine the value: its interval is finite, and it is not at a bound of the search.
+    /// Whether the data determine the value: its interval is finite, and the value is not at a
+    /// bound of the search.
     pub identified: bool,
 }
 
 /// Correlation of two unknowns' errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Correlation {
-    /// Names of the two.
+    /// Names of the two unknowns.
     pub between: [String; 2],
     /// From -1 to 1.
     pub correlation: f64,
 }
 
-/// A measured signal, and the same signal of the fitted gel.
+/// A measured signal, and the same signal simulated with the fitted values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedSignal {
     /// Name of the curve.
     pub curve: String,
-    /// Index of the taxel; none for a force.
+    /// Index of the taxel; `None` for a force.
     pub taxel: Option<usize>,
-    /// Root mean square of fitted less measured over the largest measured value, %.
+    /// Root mean square of fitted minus measured values, over the largest measured value, %.
     pub deviation_percent: f64,
     /// Correlation of neighbouring residuals: near 0 for noise, near 1 where the model is wrong.
     pub neighbour_correlation: f64,
     /// Time, s; `[n_samples]`.
     #[serde(skip)]
     pub time_s: Vec<f64>,
-    /// Depth as measured, mm; `[n_samples]`.
+    /// Measured depth, mm; `[n_samples]`.
     #[serde(skip)]
     pub depth_mm: Vec<f64>,
-    /// Measured, N or kPa; `[n_samples]`.
+    /// Measured values, N or kPa; `[n_samples]`.
     #[serde(skip)]
     pub measured: Vec<f64>,
-    /// Fitted, N or kPa; `[n_samples]`.
+    /// Fitted values, N or kPa; `[n_samples]`.
     #[serde(skip)]
     pub fitted: Vec<f64>,
 }
@@ -74,21 +77,23 @@ pub struct FittedSignal {
 /// The result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The gel's material, with the values found.
+    /// The material of the gel with the fitted values.
     pub material: Material,
     /// Poisson's ratio of the material at small strain.
     pub poissons_ratio: f64,
-    /// The unknowns, in the order asked for; gains of taxels last.
+    /// The unknowns in the order in which they were requested; gains of taxels come last.
     pub unknowns: Vec<FittedUnknown>,
     /// Correlations of all pairs of unknowns that the data determine.
     pub correlations: Vec<Correlation>,
-    /// Largest over smallest singular value of the Jacobian, its columns of unit length: above 30, some unknowns are hard to separate.
+    /// Ratio of the largest to the smallest singular value of the Jacobian with columns of unit
+    /// length. Above 30, some unknowns are hard to separate.
     pub condition: f64,
-    /// Standard deviation of the residuals over the largest measured value of their curve (forces) or of all (readings), %.
+    /// Standard deviation of the residuals, over the largest measured value of their curve (forces)
+    /// or of all curves (readings), %.
     pub noise_percent: f64,
-    /// Usable samples.
+    /// Number of usable samples.
     pub n_samples: usize,
-    /// Steps that the fit took, rejected steps included.
+    /// Number of steps of the fit, including rejected steps.
     pub iterations: u32,
     /// Whether the fit ended because no further step promised a smaller error.
     pub converged: bool,
@@ -98,14 +103,17 @@ pub struct Fit {
     pub signals: Vec<FittedSignal>,
 }
 
-/// Fits the free parameters to the curves. The gel is meshed and solved with its own settings; its material is the initial guess.
-/// `tell` is called with the root mean square of the residuals, over the largest measured value, after each step.
+/// Fits the free parameters to the curves. The gel is meshed and solved with its own settings; its
+/// material is the initial guess. `tell` is called after each step with the root mean square of the
+/// residuals, over the largest measured value.
 ///
-/// Confidence intervals are those of the linearised model, `x ± t s √(JᵀJ)⁻¹ᵢᵢ` with Student's `t`, on the scale on which the unknown is
-/// sought (the logarithm for what is positive): right if the residuals are independent noise of one variance.
+/// Confidence intervals are those of the linearized model, `x ± t s √(JᵀJ)⁻¹ᵢᵢ` with Student's `t`,
+/// on the scale on which the unknown is sought (the logarithm for positive values). They are right
+/// if the residuals are independent noise of one variance.
 ///
 /// # Errors
-/// Invalid curves, parameters that this gel or these curves do not allow, and a press that can't be simulated with the initial values.
+/// Invalid curves; parameters that this gel or these curves do not allow; a press that cannot be
+/// simulated with the initial values.
 pub fn fit(
     gel: &Gel,
     curves: &[Curve],
@@ -123,7 +131,8 @@ pub fn fit(
     Ok(judge(&problem, &start, &solution))
 }
 
-/// Starts each taxel's gain at the value that fits best on its own.
+/// Starts each taxel's gain at the value that fits best by itself. Says whether any gain was
+/// changed.
 fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool {
     let mut any = false;
     for (unknown, start) in problem.unknowns.all.iter().zip(start) {
@@ -171,11 +180,11 @@ fn judge(problem: &Problem, start: &[f64], solution: &Solution) -> Fit {
     let quantile = student_quantile(0.975, freedom);
     let mut warnings = Vec::new();
     if !*converged {
-        warnings.push(format!("the fit had not settled after {iterations} steps"));
+        warnings.push(format!("the fit did not converge in {iterations} steps"));
     }
     if variance.sqrt() > TOO_MUCH {
         warnings.push(format!(
-            "residuals are {:.1} % of the largest value, expected below {:.0} %: the gel is not of this law, or the search got stuck; start from other values",
+            "residuals are {:.1} % of the largest value, expected below {:.0} %: the material law does not describe the gel, or the search ended in a local minimum; start from other values",
             100.0 * variance.sqrt(),
             100.0 * TOO_MUCH
         ));
@@ -190,7 +199,7 @@ fn judge(problem: &Problem, start: &[f64], solution: &Solution) -> Fit {
         .fold(0.0, f64::max);
     if worst > NOT_NOISE {
         warnings.push(format!(
-            "residuals are correlated (neighbours by up to {worst:.2}): the model is wrong somewhere, and the intervals are too narrow"
+            "residuals are correlated (neighbours by up to {worst:.2}): the model does not describe the data completely, and the intervals are too narrow"
         ));
     }
     let material = problem.unknowns.material(x);
@@ -224,7 +233,7 @@ fn fitted_unknowns(
         let at_bound = x[index] <= unknown.bounds[0] || x[index] >= unknown.bounds[1];
         if at_bound {
             warnings.push(format!(
-                "{} stands at the end of the range that is searched, {:.4}: the data do not tell it",
+                "{} is at the end of its search range, {:.4}: the data do not determine it",
                 unknown.name,
                 unknown.scale.value(x[index])
             ));
@@ -254,12 +263,12 @@ fn hard_to_tell(all: &[Unknown], known: &Covariance) -> Option<String> {
     };
     if !known.untold.is_empty() {
         Some(format!(
-            "the data do not tell {}: fix some of them",
+            "the data do not determine {}: fix some of them",
             names(&known.untold)
         ))
     } else if known.condition > HARD_TO_TELL {
         Some(format!(
-            "{} are hard to tell apart: condition {:.0}, expected below {HARD_TO_TELL:.0}",
+            "{} are hard to separate: condition {:.0}, expected below {HARD_TO_TELL:.0}",
             names(&known.worst),
             known.condition
         ))
@@ -278,7 +287,7 @@ fn correlations(all: &[Unknown], known: &Covariance, warnings: &mut Vec<String>)
                 let correlation = known.covariance[(i, j)] / scale;
                 if correlation.abs() > CORRELATED {
                     warnings.push(format!(
-                        "{} and {} can hardly be told apart: correlation {correlation:.3}",
+                        "{} and {} can hardly be separated: correlation {correlation:.3}",
                         all[j].name, all[i].name
                     ));
                 }

@@ -1,28 +1,32 @@
-//! Frames to simulate of a press, and the samples between them.
+//! Which frames of a press are simulated, and the interpolation of the samples between them.
 
 use crate::Curve;
 
-/// Largest deviation of the polygon through the turning points of the depth, as a fraction of the range of depth.
+/// Largest deviation of the depth from the polygon through its turning points, as a fraction of the
+/// range of depth.
 const STRAIGHT: f64 = 0.005;
 
-/// Fraction of a curve's duration that counts as just after a turning point.
+/// Added to the time since a turning point, as a fraction of the curve's duration, before its
+/// logarithm is taken.
 const SOON: f64 = 0.01;
 
-/// Frames that a sample is interpolated from.
+/// Number of frames that a sample is interpolated from.
 const ORDER: usize = 4;
 
-/// Which samples of a press are simulated, and how the others follow from them.
+/// Which samples of a press are simulated, and how the others are interpolated from them.
 pub(crate) struct Frames {
     /// Indices of the samples.
     pub(crate) rows: Vec<usize>,
-    /// For each sample the frames that it follows from, and their parts in it: the cubic through them, which crosses no turning point of the
-    /// depth.
+    /// For each sample, the frames that it is interpolated from and their weights. The
+    /// interpolation is a cubic through these frames, which are all on the same side of each
+    /// turning point of the depth.
     pub(crate) parts: Vec<Vec<(usize, f64)>>,
 }
 
 impl Frames {
-    /// All samples, or about as many as asked for: the turning points of the depth, and others spread evenly along depth and the logarithm of
-    /// the time since the last turning point, as relaxation goes.
+    /// All samples, or about `most` of them: the turning points of the depth, and others spread
+    /// evenly along depth and the logarithm of the time since the last turning point, because
+    /// materials relax on a logarithmic scale of time.
     pub(crate) fn new(curve: &Curve, most: usize) -> Self {
         let n = curve.time_s.len();
         if n <= most {
@@ -52,7 +56,7 @@ impl Frames {
         Self { rows, parts }
     }
 
-    /// The value of a sample, from those of the frames.
+    /// The value of a sample, interpolated from the values of the frames.
     pub(crate) fn sample(&self, row: usize, of_frame: impl Fn(usize) -> f64) -> f64 {
         self.parts[row]
             .iter()
@@ -61,7 +65,7 @@ impl Frames {
     }
 }
 
-/// Lengths along which frames are spread, up to each sample.
+/// Lengths along which frames are spread, up to each sample; `[n_samples]`.
 fn lengths(curve: &Curve, corners: &[usize], range_mm: f64) -> Vec<f64> {
     let Curve { time_s, depth_mm, .. } = curve;
     let n = time_s.len();
@@ -81,7 +85,8 @@ fn lengths(curve: &Curve, corners: &[usize], range_mm: f64) -> Vec<f64> {
     along
 }
 
-/// Samples that a polygon through the depths needs to stay this close to them (Ramer, 1972; Douglas and Peucker, 1973), in order.
+/// The samples that a polygon needs as corners to stay this close to the depths (Ramer, 1972;
+/// Douglas and Peucker, 1973), in order.
 fn corners(curve: &Curve, within_mm: f64) -> Vec<usize> {
     let Curve { time_s, depth_mm, .. } = curve;
     let last = time_s.len() - 1;
@@ -103,7 +108,7 @@ fn corners(curve: &Curve, within_mm: f64) -> Vec<usize> {
     found
 }
 
-/// Lagrange's polynomial through the frames around a sample.
+/// Weights of Lagrange's polynomial through the frames around a sample.
 fn parts(curve: &Curve, rows: &[usize], corners: &[usize], row: usize) -> Vec<(usize, f64)> {
     let frame_at = |row: usize| rows.partition_point(|&other| other < row);
     let end = corners.partition_point(|&corner| corner < row).max(1);
@@ -128,7 +133,7 @@ mod tests {
     use glam::DQuat;
     use twintac_shape::Shape;
 
-    /// Down in 2 s, held for 16 s, up.
+    /// Moved in during 2 s, held for 16 s, moved out.
     fn press() -> Curve {
         let time_s: Vec<f64> = (0..=2000).map(|i| 0.01 * f64::from(i)).collect();
         Curve {

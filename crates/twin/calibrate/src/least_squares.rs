@@ -1,8 +1,10 @@
 //! Nonlinear least squares within bounds.
 //!
-//! Derivatives of a rough contact are inexact, since friction is left out of some of them, and take twice as long as the curves. So they are not computed
-//! at each step: what a step found corrects them along its way (Broyden, Mathematics of Computation 19, 1965). They are computed anew where a step that
-//! they promised something of is rejected, and where the search would end.
+//! With friction, derivatives are inexact, because friction is left out of some of them, and they
+//! take twice as long as the curves. They are therefore not computed at each step; instead, the
+//! result of a step corrects them along its direction (Broyden, Mathematics of Computation 19,
+//! 1965). They are computed again after a rejected step for which they had promised an improvement,
+//! and where the search would end.
 
 use std::convert::Infallible;
 
@@ -11,11 +13,13 @@ use twintac_fit::{Method, Quadratic, Range};
 use crate::CalibrateError;
 use crate::problem::{Evaluation, Problem};
 
-/// The search ends when a step promises to lower the sum of squares by less than this fraction of what a simulated frame has of it: about
-/// a tenth of a standard error. Samples between frames are interpolated, and tell nothing of their own.
+/// The search ends when a step promises to lower the sum of squares by less than this fraction of
+/// one simulated frame's share of it: about a tenth of a standard error. Samples between frames are
+/// interpolated, and carry no information of their own.
 const ENOUGH: f64 = 1e-2;
 
-/// The search ends after so many steps in turn that lower the sum of squares by less than that: derivatives of a rough contact promise more than they keep.
+/// The search also ends after this many successive steps that each lower the sum of squares by less
+/// than that. With friction, the derivatives promise more than a step achieves.
 const PATIENCE: u32 = 3;
 
 /// Mean square of the residuals below which the fit counts as exact.
@@ -25,7 +29,7 @@ const EXACT: f64 = 1e-16;
 pub(crate) struct Solution {
     pub(crate) x: Vec<f64>,
     pub(crate) evaluation: Evaluation,
-    /// The derivatives there, corrected by steps that were rejected.
+    /// The derivatives at `x`, corrected by rejected steps.
     pub(crate) jacobian: Vec<Vec<f64>>,
     pub(crate) iterations: u32,
     /// Whether the search ended because no further step promised a smaller error.
@@ -51,15 +55,16 @@ fn cost(residuals: &[f64]) -> f64 {
     0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
 }
 
-/// The derivatives of all residuals, `[n_residuals][n_unknowns]`, at one guess.
+/// The derivatives of all residuals, `[n_residuals][n_unknowns]`, at one point.
 struct Derivatives {
     rows: Vec<Vec<f64>>,
-    /// Whether they were computed there, and not only corrected on the way there.
+    /// Whether they were computed at this point, and not only corrected on the way to it.
     are_computed: bool,
 }
 
 impl Derivatives {
-    /// Changes them as little as can be, each in the unit of its column, so that they lead to what was found at the end of a way.
+    /// Changes the derivatives as little as possible, each measured in the unit of its column, so
+    /// that they predict the residuals that were found at the end of a step.
     fn correct(&mut self, way: &[f64], before: &[f64], after: &[f64]) {
         let columns = (0..way.len()).map(|i| self.rows.iter().map(|row| row[i] * row[i]).sum::<f64>());
         let weighted: Vec<f64> = columns.zip(way).map(|(square, way)| square * way).collect();
@@ -69,7 +74,7 @@ impl Derivatives {
             .map(|(weighted, way)| weighted * way)
             .sum();
         if length == 0.0 {
-            return; // held by the bounds
+            return; // all unknowns are held by the bounds
         }
         for (row, (before, after)) in self.rows.iter_mut().zip(before.iter().zip(after)) {
             let foretold: f64 = row.iter().zip(way).map(|(rate, way)| rate * way).sum();
@@ -80,7 +85,7 @@ impl Derivatives {
     }
 }
 
-/// The sum of squares of a problem, and where it was lowest so far.
+/// The sum of squares of a problem, and the point where it was lowest so far.
 struct Squares<'a> {
     problem: &'a Problem<'a>,
     x: Vec<f64>,
@@ -102,7 +107,8 @@ impl<'a> Squares<'a> {
         })
     }
 
-    /// Computes the derivatives where the sum was lowest. Where they can't be, those that are there stand for them.
+    /// Computes the derivatives at the point where the sum was lowest. If that fails, the present
+    /// ones are kept.
     fn compute(&mut self, at: &Evaluation) {
         if let Ok(rows) = self.problem.jacobian(&self.x, at) {
             self.derivatives.rows = rows;
@@ -119,7 +125,7 @@ impl twintac_fit::Problem for Squares<'_> {
     type At = Evaluation;
     type Error = Infallible;
 
-    /// What can't be simulated is no place to go.
+    /// A point that cannot be simulated is rejected.
     fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Evaluation)>, Infallible> {
         let evaluation = self.problem.evaluate(x).ok();
         Ok(evaluation.map(|evaluation| (cost(&evaluation.residuals), evaluation)))
@@ -147,10 +153,11 @@ impl twintac_fit::Problem for Squares<'_> {
     }
 }
 
-/// Minimizes the sum of squares from `x`; `tell` is called with the root mean square of the residuals after each step.
+/// Minimizes the sum of squares from `x`. `tell` is called after each step with the root mean
+/// square of the residuals.
 ///
 /// # Errors
-/// The curves have no derivatives at `x`.
+/// The derivatives cannot be computed at `x`.
 pub(crate) fn minimize(
     problem: &Problem,
     x: Vec<f64>,

@@ -7,24 +7,26 @@ use serde::{Serialize, Serializer};
 /// A parameter that a fit can vary.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// A constant of the material, by the name that files have for it: `shear_modulus_kpa`, `terms[0].alpha`, `prony[0].time_s`. If neither the
-    /// bulk modulus nor Poisson's ratio is free, the ratio stays as described.
+    /// A constant of the material, by the name that it has in files: `shear_modulus_kpa`,
+    /// `terms[0].alpha`, `prony[0].time_s`. If neither the bulk modulus nor Poisson's ratio is
+    /// free, the ratio keeps its described value.
     Constant(String),
     /// Poisson's ratio at small strain.
     PoissonsRatio,
     /// Coulomb's coefficient of friction between gel and indenters, the same for all curves.
     Friction,
-    /// True depth of the indenter less the recorded depth, mm; each curve has its own.
+    /// True depth of the indenter minus the recorded depth, mm; one for each curve.
     DepthOffset,
-    /// Measured over true force, the same for all curves.
+    /// Ratio of measured to true force; one for all curves.
     ForceScale,
-    /// Measured less true force at no load, N; each curve has its own.
+    /// Measured minus true force at no load, N; one for each curve.
     ForceOffset,
-    /// Reading over pressure at the port; each taxel has its own, the same for all curves. Always free where readings are fitted.
+    /// Ratio of a taxel's reading to the pressure at its port; one for each taxel, for all curves.
+    /// It is always free where readings are fitted.
     Gain,
 }
 
-/// All that are not constants of a material.
+/// All parameters that are not constants of a material.
 const KNOWN: [(&str, Parameter); 6] = [
     ("poissons_ratio", Parameter::PoissonsRatio),
     ("friction", Parameter::Friction),
@@ -35,7 +37,7 @@ const KNOWN: [(&str, Parameter); 6] = [
 ];
 
 impl Parameter {
-    /// The parameter of a name; any other name is taken for a constant of the material.
+    /// The parameter with a name. Any other name is taken for a constant of the material.
     #[must_use]
     pub fn named(name: &str) -> Self {
         let known = KNOWN.into_iter().find(|(known, _)| *known == name);
@@ -48,7 +50,7 @@ impl Parameter {
         matches!(self, Self::Constant(_) | Self::PoissonsRatio)
     }
 
-    /// Names of all that are not constants of a material.
+    /// Names of all parameters that are not constants of a material.
     pub(crate) fn names() -> impl Iterator<Item = &'static str> {
         KNOWN.into_iter().map(|(name, _)| name)
     }

@@ -9,18 +9,20 @@ use crate::frames::Frames;
 use crate::unknown::Unknowns;
 use crate::{CalibrateError, Parameter};
 
-/// Depths farther above the gel than this are simulated as this one, mm: nothing changes there.
+/// Depths farther above the gel than this are simulated at this depth, mm, because nothing changes
+/// there.
 const ABOVE_MM: f64 = -0.05;
 
-/// Step of the difference quotient by the coefficient of friction: what the solver leaves unbalanced is small beside what it does.
+/// Step of the difference quotient with respect to the coefficient of friction. It is large enough
+/// that the solver's remaining imbalance is small beside the change.
 const FRICTION_DIFFERENCE: f64 = 0.05;
 
 /// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSettings {
-    /// Frames simulated of each curve, about: samples between them are interpolated.
+    /// Approximate number of simulated frames of each curve. Samples between them are interpolated.
     pub most_frames: usize,
-    /// Steps of the fit at most.
+    /// Largest number of steps of the fit.
     pub max_iterations: u32,
 }
 
@@ -40,29 +42,30 @@ pub(crate) struct Problem<'a> {
     pub(crate) unknowns: Unknowns,
     /// The simulated frames of each curve.
     frames: Vec<Frames>,
-    /// Scales of the residuals, by curve and signal: the largest force of a curve, N, or the largest reading of all, kPa.
+    /// Scales of the residuals, by curve and signal: the largest force of a curve, N, or the
+    /// largest reading of all, kPa.
     pub(crate) scales: Vec<Vec<f64>>,
 }
 
-/// All curves at one guess.
+/// All curves at one point of the search.
 pub(crate) struct Evaluation {
-    /// The simulated frames. `[n_curves][n_frames]`
+    /// The simulated frames; `[n_curves][n_frames]`.
     presses: Vec<Vec<RatedFrame>>,
-    /// The modelled signals. `[n_curves][n_signals][n_samples]`
+    /// The modelled signals; `[n_curves][n_signals][n_samples]`.
     pub(crate) model: Vec<Vec<Vec<f64>>>,
-    /// Model less measured in units of the signals' scales, of all usable samples.
+    /// Modelled minus measured values in units of the signals' scales, for all usable samples.
     pub(crate) residuals: Vec<f64>,
-    /// Whether the frames have their rates, and so derivatives are there without more presses.
+    /// Whether the frames contain their derivatives, so that these need no further presses.
     pub(crate) has_rates: bool,
 }
 
-/// How the frames of a press change with some of the unknowns.
+/// Derivatives of the frames of a press with respect to some of the unknowns.
 struct Rates {
     /// Indices of these unknowns.
     unknowns: Vec<usize>,
-    /// By frame and unknown, N.
+    /// `[n_frames][n_unknowns]`, N per unit of the unknown's coordinate.
     force_n: Vec<Vec<f64>>,
-    /// By frame, unknown and taxel, kPa.
+    /// `[n_frames][n_unknowns][n_taxels]`, kPa per unit of the unknown's coordinate.
     port_pressure_kpa: Vec<Vec<Vec<f64>>>,
 }
 
@@ -132,7 +135,7 @@ impl<'a> Problem<'a> {
     /// Simulates all curves, each on a thread.
     pub(crate) fn evaluate(&self, x: &[f64]) -> Result<Evaluation, CalibrateError> {
         let presses = self.each_curve(|curve| match self.friction(curve, x) {
-            0.0 => self.press(curve, x, 0.0, &self.directions(curve, x).1), // with its rates at once
+            0.0 => self.press(curve, x, 0.0, &self.directions(curve, x).1), // together with its derivatives
             friction => self.press(curve, x, friction, &[]),
         })?;
         let (mut model, mut residuals) = (Vec::new(), Vec::new());
@@ -162,7 +165,8 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The derivatives of the residuals where they were evaluated. `[n_residuals][n_unknowns]`
+    /// The derivatives of the residuals at the point where they were evaluated;
+    /// `[n_residuals][n_unknowns]`.
     pub(crate) fn jacobian(&self, x: &[f64], at: &Evaluation) -> Result<Vec<Vec<f64>>, CalibrateError> {
         let rates = self.each_curve(|curve| self.rates(curve, x, &at.presses[curve]))?;
         let mut jacobian = Vec::new();
@@ -174,7 +178,7 @@ impl<'a> Problem<'a> {
         Ok(jacobian)
     }
 
-    /// Does something for all curves, each on a thread.
+    /// Calls `work` for all curves, each on a thread.
     fn each_curve<T: Send>(
         &self,
         work: impl Fn(usize) -> Result<T, CalibrateError> + Sync,
@@ -192,13 +196,13 @@ impl<'a> Problem<'a> {
         self.unknowns.value(&Parameter::Friction, None, x, given)
     }
 
-    /// The unknowns that a press has rates for, and the rates of what.
+    /// The unknowns for which a press has derivatives, and the directions of these derivatives.
     fn directions(&self, curve: usize, x: &[f64]) -> (Vec<usize>, Vec<Direction>) {
         let direction = |unknown| Some((unknown, self.unknowns.direction(unknown, curve, x)?));
         (0..x.len()).filter_map(direction).unzip()
     }
 
-    /// What multiplies a simulated signal, and what is added then.
+    /// Factor and offset of a simulated signal.
     fn scale_and_offset(&self, curve: usize, quantity: Quantity, x: &[f64]) -> [f64; 2] {
         let value = |parameter, owner, otherwise| self.unknowns.value(&parameter, owner, x, otherwise);
         match quantity {
@@ -246,8 +250,9 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// How a press that was simulated changes. The rates by material and depth are those of a gel without friction, which cannot be differentiated:
-    /// friction changes how much is carried, and little of how that changes.
+    /// The derivatives of a simulated press. Those with respect to material and depth are those of
+    /// a gel without friction, because a press with friction cannot be differentiated. Friction
+    /// changes the forces, but changes their derivatives little.
     fn rates(&self, index: usize, x: &[f64], pressed: &[RatedFrame]) -> Result<Rates, CalibrateError> {
         let (unknowns, directions) = self.directions(index, x);
         let friction = self.friction(index, x);
@@ -279,7 +284,7 @@ impl<'a> Problem<'a> {
         Ok(rates)
     }
 
-    /// Adds the derivatives of a signal's residuals.
+    /// Appends the derivatives of a signal's residuals.
     fn rows(
         &self,
         curve: usize,
@@ -325,7 +330,7 @@ impl<'a> Problem<'a> {
 }
 
 impl Quantity {
-    /// Its value in a frame: N or kPa.
+    /// The value of the quantity in a frame, N or kPa.
     fn of(self, frame: &RatedFrame) -> f64 {
         match self {
             Self::Force => frame.force_n,

@@ -1,15 +1,16 @@
 //! Scales on which unknowns are sought.
 
-/// How a coordinate of the search becomes a value: everywhere a step of one is a large one.
+/// The function that maps a coordinate of the search to a value. On each scale, a step of one is a
+/// large step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Scale {
-    /// `x`
+    /// `x`.
     Linear,
-    /// `exp x`: values above zero.
+    /// `exp x`, for values above zero.
     Log,
-    /// `-exp x`: values below zero.
+    /// `-exp x`, for values below zero.
     NegativeLog,
-    /// `1/(1 + exp -x)`: values between 0 and 1.
+    /// `1/(1 + exp -x)`, for values between 0 and 1.
     Logit,
 }
 
@@ -32,7 +33,7 @@ impl Scale {
         }
     }
 
-    /// Derivative of the value in the coordinate.
+    /// Derivative of the value with respect to the coordinate.
     pub(crate) fn rate(self, x: f64) -> f64 {
         match self {
             Self::Linear => 1.0,

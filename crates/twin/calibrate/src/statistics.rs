@@ -3,11 +3,12 @@
 use faer::{Mat, Side};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Condition index of the Jacobian, its columns of unit length, from which unknowns are hard to separate (Belsley, Kuh and Welsch,
-/// Regression Diagnostics, 1980, section 3.2).
+/// Condition index of the Jacobian with columns of unit length, from which unknowns are hard to
+/// separate (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 3.2).
 pub(crate) const HARD_TO_TELL: f64 = 30.0;
 
-/// Condition index from which they cannot be determined at all: about the limit set by the accuracy of the derivatives.
+/// Condition index from which unknowns cannot be determined at all. It is about the limit set by
+/// the accuracy of the derivatives.
 const IMPOSSIBLE_TO_TELL: f64 = 1e4;
 
 /// An unknown takes part in a direction if its component is larger than this.
@@ -15,9 +16,10 @@ const TAKES_PART: f64 = 0.1;
 
 /// Covariance of the unknowns, and which of them the data determine.
 pub(crate) struct Covariance {
-    /// Infinite variance for unknowns that the data do not determine. `[n][n]`
+    /// Variances are infinite for unknowns that the data do not determine; `[n][n]`.
     pub(crate) covariance: Mat<f64>,
-    /// Largest over smallest singular value of the Jacobian, its columns of unit length.
+    /// Ratio of the largest to the smallest singular value of the Jacobian with columns of unit
+    /// length.
     pub(crate) condition: f64,
     /// Which unknowns take part in the worst determined combination.
     pub(crate) worst: Vec<usize>,
@@ -25,11 +27,11 @@ pub(crate) struct Covariance {
     pub(crate) untold: Vec<usize>,
 }
 
-/// The covariance `s² (JᵀJ)⁻¹` of a fit whose residuals are independent, all of the same variance `s²` (Seber and Wild, Nonlinear
-/// Regression, 1989, section 2.1.2).
+/// The covariance `s² (JᵀJ)⁻¹` of a fit whose residuals are independent and have the same variance
+/// `s²` (Seber and Wild, Nonlinear Regression, 1989, section 2.1.2).
 pub(crate) fn covariance(normal: &Mat<f64>, variance: f64) -> Covariance {
     let n = normal.nrows();
-    // The length of each column of the Jacobian; a column of zeros stays one.
+    // The length of each column of the Jacobian; 1 for a column of zeros.
     let length = |i: usize| {
         let square: f64 = normal[(i, i)];
         if square > 0.0 { square.sqrt() } else { 1.0 }
@@ -76,13 +78,14 @@ pub(crate) fn covariance(normal: &Mat<f64>, variance: f64) -> Covariance {
     }
 }
 
-/// Quantile of Student's distribution, to nine digits up to 10⁴ degrees of freedom and to four up to 10⁶; NaN without degrees of freedom.
+/// Quantile of Student's distribution, accurate to nine digits up to 10⁴ degrees of freedom and to
+/// four up to 10⁶. NaN if there are no degrees of freedom.
 pub(crate) fn student_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees_of_freedom)
         .map_or(f64::NAN, |distribution| distribution.inverse_cdf(probability))
 }
 
-/// Correlation of neighbours: near zero for noise, near one where the model is wrong.
+/// Correlation of neighbouring residuals: near 0 for noise, near 1 where the model is wrong.
 pub(crate) fn neighbour_correlation(residuals: &[f64]) -> f64 {
     let squares: f64 = residuals.iter().map(|r| r * r).sum();
     let products: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();

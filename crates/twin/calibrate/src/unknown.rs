@@ -15,7 +15,7 @@ const DIFFERENCE: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub(crate) struct Unknown {
     pub(crate) parameter: Parameter,
-    /// The curve, or the taxel, that it belongs to, if it does not belong to all.
+    /// The index of the curve or of the taxel that it belongs to; `None` if it belongs to all.
     pub(crate) owner: Option<usize>,
     pub(crate) name: String,
     pub(crate) scale: Scale,
@@ -32,11 +32,12 @@ pub(crate) struct Unknown {
 pub(crate) struct Unknowns {
     pub(crate) all: Vec<Unknown>,
     material: Material,
-    /// Whether the bulk modulus follows the shear modulus: Poisson's ratio is fixed, or an unknown of its own.
+    /// Whether the bulk modulus follows the shear modulus: Poisson's ratio is fixed, or an unknown
+    /// of its own.
     keeps_ratio: bool,
 }
 
-/// Bulk over shear modulus at a Poisson's ratio.
+/// Ratio of bulk modulus to shear modulus at a Poisson's ratio.
 fn bulk_over_shear(ratio: f64) -> f64 {
     2.0 * (1.0 + ratio) / (3.0 * (1.0 - 2.0 * ratio))
 }
@@ -72,12 +73,12 @@ impl Unknowns {
             free.push(Parameter::Gain);
         }
         if let Some(twice) = (1..free.len()).find(|&index| free[..index].contains(&free[index])) {
-            return refuse(&free[twice], "it was asked for twice");
+            return refuse(&free[twice], "it was requested twice");
         }
         let bulk = Parameter::named("bulk_modulus_kpa");
         let keeps_ratio = !free.contains(&bulk);
         if !keeps_ratio && free.contains(&Parameter::PoissonsRatio) {
-            return refuse(&bulk, "Poisson's ratio is free already, and says the same");
+            return refuse(&bulk, "Poisson's ratio is free already, and determines it");
         }
         if !signals.clone().any(|signal| signal.quantity == Quantity::Force) {
             if free.contains(&Parameter::ForceScale) || free.contains(&Parameter::ForceOffset) {
@@ -87,8 +88,7 @@ impl Unknowns {
             moduli.retain(|name| name.ends_with("_kpa") && name != "bulk_modulus_kpa");
             let moduli: Vec<Parameter> = moduli.into_iter().map(Parameter::Constant).collect();
             if moduli.iter().all(|modulus| free.contains(modulus)) {
-                let reason =
-                    "readings with a gain of their own per taxel tell no stiffness, only ratios of constants";
+                let reason = "readings with a free gain for each taxel do not determine the stiffness, only ratios of constants";
                 return refuse(&moduli[0], reason);
             }
         }
@@ -138,7 +138,7 @@ impl Unknowns {
         material
     }
 
-    /// How a coordinate changes the presses of a curve; none where it does not.
+    /// How a coordinate changes the presses of a curve; `None` where it does not change them.
     pub(crate) fn direction(&self, index: usize, curve: usize, x: &[f64]) -> Option<Direction> {
         let unknown = &self.all[index];
         let (step, indenter_mm) = match unknown.parameter {
@@ -158,7 +158,8 @@ impl Unknowns {
         })
     }
 
-    /// The value of a parameter that belongs to a curve or a taxel, or its usual value.
+    /// The value of a parameter that belongs to a curve or a taxel, or `usual` if it is not an
+    /// unknown of the fit.
     pub(crate) fn value(&self, parameter: &Parameter, owner: Option<usize>, x: &[f64], usual: f64) -> f64 {
         let mut all = self.all.iter().zip(x);
         let found = all.find(|(unknown, _)| unknown.parameter == *parameter && unknown.owner == owner);
@@ -192,7 +193,8 @@ fn unknown(
                 _ => (scale, value, [x - 1e3_f64.ln(), x + 1e3_f64.ln()], 0.7),
             }
         }
-        // Forces are about straight in the ratio, on any scale that opens up towards 1/2 they are not.
+        // Forces are about linear in the ratio. They are not on a scale that stretches values
+        // towards 1/2.
         Parameter::PoissonsRatio => (Scale::Linear, poissons_ratio(material), [0.05, 0.4999], 0.05),
         Parameter::Friction => (Scale::Linear, 0.0, [0.0, 1.0], 0.1),
         Parameter::DepthOffset => (Scale::Linear, 0.0, [-1.0, 1.0], 0.1),
@@ -211,7 +213,8 @@ fn unknown(
     })
 }
 
-/// The scale of a constant, and where it starts. A constant keeps its sign if the material is invalid with the other one.
+/// The scale of a constant and its initial value. A constant keeps its sign if the material is
+/// invalid with the opposite sign.
 fn constant_scale(material: &Material, name: &str) -> Result<(Scale, f64), CalibrateError> {
     let Some(value) = constants::get(material, name) else {
         let mut known = constants::names(material);
@@ -230,7 +233,7 @@ fn constant_scale(material: &Material, name: &str) -> Result<(Scale, f64), Calib
         (true, _) => Ok((Scale::Linear, value)),
         (false, 0.0) => Err(CalibrateError::NotFree {
             name: name.to_owned(),
-            reason: "it is described as 0; describe a rough value above 0 to start from".into(),
+            reason: "its described value is 0; describe an approximate value above 0 as a start".into(),
         }),
         (false, value) if value < 0.0 => Ok((Scale::NegativeLog, value)),
         (false, _) => Ok((Scale::Log, value)),

@@ -1,4 +1,4 @@
-//! Materials found again in curves simulated with noise.
+//! Materials are recovered from simulated curves with noise.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -57,23 +57,24 @@ fn gel(material: &Material) -> Gel {
         ..SimulateSettings::fine()
     };
     settings.solver.tolerance = 1e-6;
-    // Steps of other lengths must not differ by what they leave of penetration.
+    // The length of steps must not matter through the penetration that they leave.
     settings.solver.penetration_mm = 5e-4;
     Gel::new(Arc::new(sensor), settings).with_material(material.clone())
 }
 
-/// A model as files have it.
+/// A model from JSON, as in files.
 fn model(json: &str) -> Model {
     serde_json::from_str(json).unwrap()
 }
 
-/// What a bench would measure: this far down at a speed, a hold, and up; noise of 1 % of the largest force.
+/// A simulated measurement: down to this depth at constant speed, a hold, and up, with noise of 1 %
+/// of the largest force.
 fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64) -> Curve {
     let ball = Shape::Sphere { radius_mm: 4.0 };
     measured_with(ball, &gel(material), depth_mm, hold_s, n, seed)
 }
 
-/// The same with any shape on any gel.
+/// As [`measured`], with any shape on any gel.
 fn measured_with(shape: Shape, gel: &Gel, depth_mm: f64, hold_s: f64, n: usize, seed: u64) -> Curve {
     let duration_s = 2.0 + hold_s;
     let time_s: Vec<f64> = (0..n).map(|i| duration_s * i as f64 / (n - 1) as f64).collect();
@@ -193,7 +194,7 @@ fn assert_recovered(fit: &Fit, name: &str, truth: f64, within: f64) {
 fn stiffness_and_depth_offset_are_found() {
     let truth = Material::neo_hookean(60.0, 0.47);
     let mut curve = forces(measured(&truth, 2.0, 0.0, 150, 1));
-    // The bench thinks that the surface is 0.05 mm lower than it is.
+    // The recorded depths assume a surface that is 0.05 mm lower than the true one.
     curve.depth_mm.iter_mut().for_each(|depth_mm| *depth_mm -= 0.05);
     let start = Material::neo_hookean(90.0, 0.47);
     let fit = found(&[curve], &start, &["shear_modulus_kpa", "depth_offset_mm"]);
@@ -305,5 +306,9 @@ fn what_the_data_do_not_tell_is_said() {
     let curve = forces(measured(&truth, 1.0, 0.0, 12, 5));
     let fit = found(&[curve], &truth, &["shear_modulus_kpa", "force_scale"]);
     assert!(fit.unknowns.iter().all(|unknown| !unknown.identified));
-    assert!(fit.warnings.iter().any(|warning| warning.contains("do not tell")));
+    assert!(
+        fit.warnings
+            .iter()
+            .any(|warning| warning.contains("do not determine"))
+    );
 }

@@ -8,32 +8,34 @@ use twintac_random::{RandomStream, normal, stream};
 use crate::network::{Network, softmax};
 use crate::{ClassifyError, Confusion, Series, TrainSettings, Trial};
 
-/// Part of the steps over which the learning rate rises.
+/// Fraction of the steps over which the learning rate rises.
 const RISE: f64 = 0.1;
-/// Inputs that vary less than this over the trials are not enlarged further: what varies there is noise.
+/// Inputs that vary less than this over the trials are not scaled up further, because their
+/// variation is noise.
 const SMALLEST_DEVIATION: f32 = 0.01;
 
-/// Tells the shape of a press from what the taxels read.
+/// Classifies the shape of a press from the readings of the taxels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
-    /// They vote: their classes' probabilities are averaged.
+    /// The class probabilities of these networks are averaged.
     networks: Vec<Network>,
     scale: Scale,
     n_classes: usize,
 }
 
-/// How training goes.
+/// Progress of the training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Passes over the trials that are done.
+    /// Finished passes over the trials.
     pub epoch: usize,
-    /// How many there will be.
+    /// Number of passes.
     pub of: usize,
     /// Mean cross-entropy over the last pass.
     pub loss: f64,
 }
 
-/// Brings every input to zero mean and unit deviation over the trials; the largest reading on a logarithmic scale.
+/// Brings every input to zero mean and unit deviation over the trials. The largest reading is on a
+/// logarithmic scale.
 #[derive(Clone, Debug, PartialEq)]
 struct Scale {
     /// `[N_SAMPLES * n_inputs]`.
@@ -43,10 +45,12 @@ struct Scale {
 }
 
 impl Classifier {
-    /// Trains on trials of so many classes. The same trials in the same order with the same seed give the same classifier, to the last bit.
+    /// Trains on trials of `n_classes` classes. The same trials in the same order with the same
+    /// seed give the same classifier, bit for bit.
     ///
     /// # Errors
-    /// No trials; trials of different sensors or of a class that there is not; settings that make no sense.
+    /// No trials; trials with different numbers of taxels, or with a class that is not below
+    /// `n_classes`; settings outside their ranges.
     pub fn train(
         trials: &[Trial],
         n_classes: usize,
@@ -111,7 +115,7 @@ impl Classifier {
             .map_or(0, |(class, _)| class)
     }
 
-    /// Which classes trials are taken for.
+    /// Classifies trials and counts true against found classes.
     #[must_use]
     pub fn judge(&self, trials: &[Trial]) -> Confusion {
         let mut confusion = Confusion::new(self.n_classes);
@@ -122,7 +126,7 @@ impl Classifier {
     }
 }
 
-/// What networks are trained with.
+/// What the networks are trained with.
 struct School<'a> {
     trials: &'a [Trial],
     scale: &'a Scale,
@@ -171,7 +175,7 @@ impl School<'_> {
         network
     }
 
-    /// Appends the inputs of a series, as of a sensor whose gains are a little different, with noise.
+    /// Appends the inputs of a series with small random changes of the gains, and with noise.
     fn put_disturbed(&self, series: &Series, random: &mut RandomStream, to: &mut Vec<f32>) {
         let settings = self.settings;
         let n_taxels = series.n_taxels();
@@ -188,7 +192,8 @@ impl School<'_> {
     }
 }
 
-/// The inputs of a series as they are; `[N_SAMPLES][n_taxels + 1]`, the largest reading last in each row.
+/// The inputs of a series before scaling; `[N_SAMPLES][n_taxels + 1]`, the largest reading last in
+/// each row.
 fn unscaled(series: &Series) -> Vec<f32> {
     let largest = series.largest_kpa.ln();
     let rows = series.shares.iter();
@@ -220,7 +225,7 @@ impl Scale {
     }
 }
 
-/// The learning rate over its largest, at a part of the steps.
+/// The learning rate as a fraction of its largest value, at a fraction of the steps.
 fn schedule(part: f64) -> f64 {
     if part < RISE {
         return part / RISE;
@@ -234,7 +239,8 @@ mod tests {
     use crate::Sampling;
     use rand::Rng;
 
-    /// Presses whose class is which of two taxels rises first, and not how much they read.
+    /// Presses whose class depends on which of two taxels rises first, and not on the size of the
+    /// readings.
     fn trials(n: usize, seed: u64) -> Vec<Trial> {
         let mut random = stream(seed, "trials");
         (0..n)

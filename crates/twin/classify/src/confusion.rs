@@ -1,16 +1,16 @@
-//! Which shapes are taken for which.
+//! Confusion matrices.
 
 use serde::{Deserialize, Serialize};
 
-/// Counts of trials by true and by found class.
+/// Numbers of trials by true and by found class.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Confusion {
-    /// `[n_classes][n_classes]`: true class, found class.
+    /// True class, found class; `[n_classes][n_classes]`.
     pub counts: Vec<Vec<usize>>,
 }
 
 impl Confusion {
-    /// Nothing counted yet.
+    /// A matrix of zeros.
     #[must_use]
     pub fn new(n_classes: usize) -> Self {
         Self {
@@ -21,12 +21,12 @@ impl Confusion {
     /// Counts a trial.
     ///
     /// # Panics
-    /// A class that there is not.
+    /// If a class is not below the number of classes.
     pub fn count(&mut self, truth: usize, found: usize) {
         self.counts[truth][found] += 1;
     }
 
-    /// Adds the counts of another one of as many classes.
+    /// Adds the counts of another matrix with the same number of classes.
     pub fn add(&mut self, other: &Self) {
         for (row, others) in self.counts.iter_mut().zip(&other.counts) {
             row.iter_mut()
@@ -35,7 +35,7 @@ impl Confusion {
         }
     }
 
-    /// Part of the trials whose class was found, %; `None` of none.
+    /// Fraction of the trials whose class was found, %; `None` if there are no trials.
     #[must_use]
     pub fn accuracy_percent(&self) -> Option<f64> {
         let right: usize = self

@@ -1,28 +1,28 @@
-//! What can go wrong.
+//! Errors of training.
 
-/// Trials that cannot be learned from.
+/// Trials or settings that cannot be used for training.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ClassifyError {
-    /// Nothing to learn from.
+    /// There are no trials.
     #[error("there are no trials to train with")]
     NoTrials,
-    /// Trials of different sensors.
+    /// Trials of sensors with different numbers of taxels.
     #[error("a trial has {found} taxels, the first has {expected}")]
     Taxels {
-        /// Of the first trial.
+        /// Taxels of the first trial.
         expected: usize,
-        /// Of another one.
+        /// Taxels of another trial.
         found: usize,
     },
     /// A class beyond the number of classes.
     #[error("a trial is of class {class}, but there are {n_classes}")]
     Class {
-        /// Of the trial.
+        /// Class of the trial.
         class: usize,
-        /// How many there are.
+        /// Number of classes.
         n_classes: usize,
     },
-    /// A setting that makes no sense.
+    /// A setting outside its range.
     #[error("setting {0}")]
     Setting(#[from] twintac_config::Problem),
 }

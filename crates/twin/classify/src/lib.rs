@@ -1,8 +1,49 @@
-//! Telling shapes by touch: a time-series transformer on what the taxels read during a press.
+//! Classification of shapes by touch: a time-series transformer on the readings of the taxels
+//! during a press.
 //!
-//! The TwinTac paper (arXiv 2509.10063, section IV-C) names "a time-series transformer" and neither its size nor its inputs. This one has the usual
-//! structure (Zerveas et al., *A Transformer-based Framework for Multivariate Time Series Representation Learning*, KDD 2021): samples are projected
-//! to tokens, places in time are learned, encoder layers follow, and the tokens of all times together give the class.
+//! In: for each press a [`Series`], made from the readings of all taxels (kPa;
+//! `[n_frames][n_taxels]`), and for training its class, together a [`Trial`]. Out:
+//! [`Classifier::classify`] gives the class of a press, and [`Classifier::judge`] counts true
+//! against found classes in a [`Confusion`] matrix. [`TrainSettings`] has the size of the network
+//! and its training.
+//!
+//! The crate sees series of readings alone. It depends neither on the twin, nor on the emulated
+//! bench, recordings, solvers or files, so it classifies `real`, `emulated` and `simulated` presses
+//! alike.
+//!
+//! # How it works
+//!
+//! The TwinTac paper (arXiv 2509.10063, section IV-C) names "a time-series transformer" and states
+//! neither its size nor its inputs. This one has the usual structure (Zerveas et al., *A
+//! Transformer-based Framework for Multivariate Time Series Representation Learning*, KDD 2021):
+//! samples are projected to tokens, positions in time are learned, encoder layers follow, and the
+//! tokens of all times together give the class.
+//!
+//! **Inputs.** A press is reduced to 12 samples. They are at equal steps of load
+//! ([`Sampling::Load`]), because with equal steps of time ([`Sampling::Time`]) speeds and holds
+//! hide the shape. Each sample has the readings of the taxels over the largest reading of the
+//! sample, and the logarithm of the largest reading of the press. Every input is brought to zero
+//! mean and unit deviation over the training set.
+//!
+//! **Training.** The loss is the mean cross-entropy, the optimizer AdamW. In training, each trial
+//! gets random gains of its taxels and noise on its samples. Several networks are trained; the
+//! class with the largest mean probability counts. The same trials, settings and seed give the same
+//! classifier, bit for bit.
+//!
+//! **Gradients** are written by hand and tested against difference quotients. The framework `burn`
+//! with its smallest backend for processors took seven processor minutes to build, as long as
+//! everything else together.
+//!
+//! ```text
+//! series      readings of a press as samples
+//! network     embedding, encoder layers, classification, and their gradients: attention, layer,
+//!             norm
+//! classifier  training, and the vote of several networks
+//! confusion   the confusion matrix
+//! settings    size and training
+//! ```
+//!
+//! # Example
 //!
 //! ```
 //! use twintac_classify::{Classifier, Sampling, Series, TrainSettings, Trial};

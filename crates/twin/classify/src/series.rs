@@ -1,24 +1,26 @@
-//! What a classifier sees of a press.
+//! The inputs of a classifier, made from the readings of a press.
 
 use std::fmt::{Display, Formatter};
 
 use serde::{Deserialize, Serialize};
 
-/// Samples of a series.
+/// Number of samples of a series.
 pub(crate) const N_SAMPLES: usize = 12;
-/// Frames at the start whose mean is taken off.
+/// Number of frames at the start whose mean is subtracted.
 const N_UNTOUCHED: usize = 3;
-/// Readings that never exceed this, kPa, are of a press that was not felt.
+/// A press whose readings never exceed this, kPa, was not felt.
 const SMALLEST_KPA: f64 = 1e-6;
 
-/// Readings count as contact from where the largest first exceeds this part of the press's largest.
+/// Contact begins where the largest reading first exceeds this fraction of the press's largest
+/// reading.
 const IN_CONTACT: f64 = 0.02;
 
-/// Where along a press its samples are.
+/// How the samples of a press are spaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
-    /// At equal steps of the largest reading, while the press goes in. How fast it was and how long it stayed does not matter.
+    /// At equal steps of the largest reading, during loading. The speed of the press and the
+    /// duration of its hold do not matter.
     Load,
     /// At equal steps of time, from first to last contact.
     Time,
@@ -33,27 +35,29 @@ impl Display for Sampling {
     }
 }
 
-/// What the taxels read during a press.
+/// Readings of the taxels during a press, as samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Over the largest of the sample, or of the press if the samples are at equal steps of time; `[N_SAMPLES][n_taxels]`.
+    /// Readings over the largest reading of the sample, or of the press if the samples are at equal
+    /// steps of time; `[N_SAMPLES][n_taxels]`.
     pub(crate) shares: Vec<Vec<f32>>,
-    /// The largest of all, kPa.
+    /// The largest reading of the press, kPa.
     pub(crate) largest_kpa: f32,
 }
 
-/// A press of a shape that is known.
+/// A press with a known shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// Which shape, from zero.
+    /// Index of the shape, from zero.
     pub class: usize,
-    /// What was read.
+    /// Its readings.
     pub series: Series,
 }
 
 impl Series {
-    /// The series of a press, from its readings above whatever constant, kPa; `[n_frames][n_taxels]`. A press starts untouched: its first three frames are
-    /// zero. `None` if nothing was felt.
+    /// The series of a press, from its readings with any constant offset, kPa;
+    /// `[n_frames][n_taxels]`. A press starts without contact: the mean of its first three frames
+    /// is taken as zero. `None` if nothing was felt.
     #[must_use]
     pub fn of(readings_kpa: &[Vec<f64>], sampling: Sampling) -> Option<Self> {
         let n_taxels = readings_kpa.first()?.len();
@@ -101,7 +105,7 @@ impl Series {
     }
 }
 
-/// The frame, and part of the next, at which a rising quantity first reaches a level.
+/// The frame, with a fraction of the next, at which a rising quantity first reaches a level.
 fn reaches(values: &[f64], level: f64) -> Option<f64> {
     let after = values.iter().position(|value| *value >= level)?;
     let before = after.saturating_sub(1);

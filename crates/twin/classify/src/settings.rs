@@ -1,37 +1,40 @@
-//! How a classifier is built and trained.
+//! Size and training of a classifier.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
 
-/// Size and training of a classifier. The TwinTac paper states none of it.
+/// Size and training of a classifier. The TwinTac paper states none of these values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrainSettings {
-    /// Networks that vote.
+    /// Number of networks whose probabilities are averaged.
     pub n_networks: usize,
-    /// Numbers in a token.
+    /// Length of a token.
     pub width: usize,
-    /// Encoder layers.
+    /// Number of encoder layers.
     pub n_layers: usize,
-    /// Heads of attention in each; they divide the width.
+    /// Number of attention heads in each layer; it divides the width.
     pub n_heads: usize,
     /// Width of each layer's perceptron.
     pub hidden: usize,
-    /// Passes over the trials. Few trials get more: see [`least_steps`](Self::least_steps).
+    /// Passes over the trials. Small training sets get more: see
+    /// [`least_steps`](Self::least_steps).
     pub epochs: usize,
-    /// Steps of the optimizer at least, however few trials there are.
+    /// Smallest number of steps of the optimizer, for small training sets.
     pub least_steps: usize,
-    /// Trials of a step.
+    /// Number of trials in a step.
     pub batch: usize,
-    /// Largest learning rate; it rises over the first tenth of the steps and falls to zero along a cosine.
+    /// Largest learning rate. The rate rises over the first tenth of the steps and falls to zero
+    /// along a cosine.
     pub learning_rate: f64,
-    /// AdamW's decay of weights.
+    /// Weight decay of AdamW.
     pub weight_decay: f64,
-    /// Longest gradient.
+    /// Largest norm of the gradient; longer gradients are shortened to it.
     pub gradient_norm: f64,
-    /// Relative deviation of the gain that each taxel of a trial gets in training.
+    /// Relative standard deviation of the random gain of each taxel of a trial in training.
     pub gain_noise: f64,
-    /// Deviation of the noise on each sample in training, of the trial's largest reading.
+    /// Standard deviation of the noise on each sample in training, as a fraction of the sample's
+    /// largest reading, or of the trial's if samples are at equal steps of time.
     pub sample_noise: f64,
 }
 

@@ -1,16 +1,17 @@
-//! A table between others.
+//! A weighted sum of tables.
 
 use crate::{DepthTable, PressFrame};
 
-/// Nodes of less weight need not reach as deep as a table between them does.
+/// Tables with less weight need not reach as deep as their sum does.
 const SMALL_WEIGHT: f64 = 0.02;
 
 impl DepthTable {
-    /// The weighted sum of tables, frame by frame; weights should add up to one. Frames that a table of any weight lacks are left out.
-    /// What is no number is taken from the table with the largest weight, and the place as well, but for its height.
+    /// The weighted sum of tables, frame by frame. The weights should add up to one. Frames that a
+    /// table of any weight lacks are left out. Values that are not numbers are taken from the table
+    /// with the largest weight; so is the location, except its height.
     ///
     /// # Panics
-    /// Without tables.
+    /// If there are no tables.
     #[must_use]
     pub fn blend(tables: &[(&Self, f64)]) -> Self {
         let n_frames = tables

@@ -7,14 +7,16 @@ use crate::{DepthTable, DepthTableError, MonotoneCubic};
 /// Smallest step of depth, mm, or force, N, that counts as an increase.
 const STEP: f64 = 1e-9;
 
-/// Numbers of each taxel.
+/// Values of each taxel: pressure, stress feature and three slopes.
 const COLUMNS: usize = 5;
 
-/// Monotone cubics through a table over depth: zero above the surface, straight on beyond the table's end.
+/// Monotone cubics through a table over depth: zero above the surface. Beyond the table's end, the
+/// force continues as a straight line over depth^n; pressures, stress features and slopes keep
+/// their last values.
 ///
-/// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1
-/// under a flat punch), because force and
-/// pressures begin as straight lines over it. A table of ten depths is then as accurate as one of fifty.
+/// They run over depth^n. Here n is the power with which the force begins to grow (Hertz's 3/2
+/// under a ball, 1 under a flat punch), because force and pressures begin as straight lines over
+/// depth^n. A table of ten depths is then as accurate as one of fifty.
 #[derive(Clone, Debug)]
 pub struct DepthCurves {
     growth: f64,
@@ -31,8 +33,8 @@ impl DepthCurves {
     /// Interpolates a table.
     ///
     /// # Errors
-    /// A table of another number of taxels, with values that are not finite, without a frame below the surface, or whose depths do not
-    /// increase.
+    /// A table with another number of taxels, with values that are not finite, without a frame
+    /// below the surface, or with depths that do not increase.
     pub fn new(table: &DepthTable, n_taxels: usize) -> Result<Self, DepthTableError> {
         let mut knots = vec![Knot {
             depth_mm: 0.0,
@@ -131,7 +133,7 @@ impl DepthCurves {
         self.pressures_kpa(depth_mm).collect()
     }
 
-    /// The same, one after the other.
+    /// As [`Self::pressure_kpa`], as an iterator.
     pub fn pressures_kpa(&self, depth_mm: f64) -> impl Iterator<Item = f64> {
         self.read(0..self.n_taxels(), depth_mm)
     }
@@ -142,18 +144,19 @@ impl DepthCurves {
         self.stresses_kpa_per_mm(depth_mm).collect()
     }
 
-    /// The same, one after the other.
+    /// As [`Self::stress_kpa_per_mm`], as an iterator.
     pub fn stresses_kpa_per_mm(&self, depth_mm: f64) -> impl Iterator<Item = f64> {
         self.read(self.n_taxels()..2 * self.n_taxels(), depth_mm)
     }
 
-    /// How each port's pressure changes with its place along x, along y and with its radius, at a depth, kPa/mm; `[n_taxels]`.
+    /// Derivatives of each port's pressure with respect to its x, y and radius, at a depth, kPa/mm;
+    /// `[n_taxels]`.
     #[must_use]
     pub fn slope_kpa_per_mm(&self, depth_mm: f64) -> Vec<[f64; 3]> {
         self.slopes_kpa_per_mm(depth_mm).collect()
     }
 
-    /// The same, one after the other.
+    /// As [`Self::slope_kpa_per_mm`], as an iterator.
     pub fn slopes_kpa_per_mm(&self, depth_mm: f64) -> impl Iterator<Item = [f64; 3]> {
         let grown = self.grown(depth_mm);
         let ports = self.features[2 * self.n_taxels()..].as_chunks::<3>().0.iter();
@@ -182,7 +185,8 @@ impl DepthCurves {
     }
 }
 
-/// The power of depth with which the force begins to grow, from the first two depths below the surface.
+/// The power of depth with which the force begins to grow, from the first two depths below the
+/// surface.
 fn growth(knots: &[Knot]) -> f64 {
     match knots {
         [_, a, b, ..] if a.force_n > 0.0 && b.force_n > a.force_n && b.depth_mm > a.depth_mm => {
@@ -203,7 +207,7 @@ mod tests {
     use super::*;
     use crate::{PressFrame, SolveQuality};
 
-    /// Hertz's force, and two pressures in proportion to it.
+    /// Hertz's force, and two pressures that are proportional to it.
     fn table() -> DepthTable {
         let frame = |i: i32| {
             let depth_mm = 2.0 * (f64::from(i) / 14.0).powf(1.25);

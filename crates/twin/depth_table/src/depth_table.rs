@@ -1,4 +1,4 @@
-//! A table over depth at one place, and its frames.
+//! A table over depth at one location, and its frames.
 
 use serde::{Deserialize, Serialize};
 use twintac_shape::Pose;
@@ -28,16 +28,17 @@ pub struct PressFrame {
     pub force_n: f64,
     /// Hydrostatic pressure -tr(σ)/3, averaged over each taxel's port, kPa; `[n_taxels]`.
     pub port_pressure_kpa: Vec<f64>,
-    /// How that pressure changes with the port's place along x, along y and with its radius, kPa/mm; `[n_taxels]`.
+    /// Derivatives of that pressure with respect to the port's x, y and radius, kPa/mm;
+    /// `[n_taxels]`.
     pub port_slope_kpa_per_mm: Vec<[f64; 3]>,
-    /// The stress feature of TwinTac (arXiv 2509.10063, equation 6): mean over the surface nodes above each taxel of von Mises stress over
-    /// distance to the taxel, kPa/mm; `[n_taxels]`.
+    /// The stress feature of TwinTac (arXiv 2509.10063, equation 6): the mean over the surface
+    /// nodes above each taxel of von Mises stress over distance to the taxel, kPa/mm; `[n_taxels]`.
     pub stress_feature_kpa_per_mm: Vec<f64>,
     /// Quality of the solve.
     pub quality: SolveQuality,
 }
 
-/// A table over depth at one place. The first frame is the untouched gel.
+/// A table over depth at one location. The first frame is the untouched gel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DepthTable {
     /// The indenter's name.
@@ -48,7 +49,7 @@ pub struct DepthTable {
     pub n_nodes: usize,
     /// Frames at increasing depth.
     pub frames: Vec<PressFrame>,
-    /// Why the frames end before they should; `None` if they do not.
+    /// Why the frames end before the requested depth; `None` if they reach it.
     pub failure: Option<String>,
 }
 

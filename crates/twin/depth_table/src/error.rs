@@ -1,4 +1,4 @@
-//! What can be wrong with a table over depth.
+//! Errors of a table over depth.
 
 /// A table that can't be interpolated over depth.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,7 +21,7 @@ pub enum DepthTableError {
     /// No frame is below the surface.
     #[error("expected a press into the gel, found {found}")]
     NoPress {
-        /// Why the table ends before, as the simulation says it.
+        /// Why the table ends before, in the words of the simulation.
         found: String,
     },
     /// The depths of the frames do not increase.

@@ -1,17 +1,18 @@
-//! Tables over depth on a regular lattice of places, and the table at any place between them.
+//! Tables over depth on a regular lattice of locations, and the table at any location between them.
 //!
-//! An array pressed at thousands of places need not be simulated at each: the pressure at a port varies over distances of the gel's height, so
-//! splines through a lattice of a third of that height have a smaller error than the mesh.
+//! An array that is pressed at thousands of locations need not be simulated at each. The pressure
+//! at a port varies over distances of the gel's height, so splines through a lattice of a third of
+//! that height have a smaller error than the mesh.
 
 use glam::DVec2;
 
 use crate::DepthTable;
 
-/// Places that differ by less along an axis stand in one line, mm.
+/// Locations that differ by less than this along an axis count as one line, mm.
 const FLAT_MM: f64 = 1e-3;
 
-/// Places x = x0 + i·dx, y = y0 + j·dy, at least four along each axis that has an extent and one along an axis that has none, with x running
-/// fastest.
+/// The locations x = x0 + i·dx, y = y0 + j·dy, with x running fastest. There are at least four
+/// along an axis that has an extent, and one along an axis that has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     low_mm: DVec2,
@@ -41,7 +42,7 @@ impl Lattice {
         }
     }
 
-    /// The places to simulate, mm.
+    /// The locations to simulate, mm; `[n_locations]`.
     #[must_use]
     pub fn places_mm(&self) -> Vec<DVec2> {
         (0..self.n_y)
@@ -62,8 +63,8 @@ impl Lattice {
             .collect()
     }
 
-    /// The table at a place inside the lattice, from the tables at [`Lattice::places_mm`], by cubic splines frame by frame. Frames that
-    /// a node near the place lacks are left out.
+    /// The table at a location inside the lattice, from the tables at [`Lattice::places_mm`], by
+    /// cubic splines, frame by frame. Frames that a node near the location lacks are left out.
     #[must_use]
     pub fn at(&self, tables: &[DepthTable], place_mm: DVec2) -> DepthTable {
         let along_x = spline_weights((place_mm.x - self.low_mm.x) / self.step_mm.x, self.n_x);
@@ -80,9 +81,10 @@ impl Lattice {
     }
 }
 
-/// The weight of each node's value at a position (in steps), for the cubic spline through equally spaced nodes, its third derivative
-/// continuous at the second and the last but one (not-a-knot). There its curvature is the second difference; between, the curvatures
-/// m solve m₋ + 4 m + m₊ = 6 times the second difference. `[n_nodes]`
+/// The weight of each node's value at a position (in steps), for the cubic spline through equally
+/// spaced nodes whose third derivative is continuous at the second and the last node but one
+/// (not-a-knot); `[n_nodes]`. At these two nodes its curvature is the second difference. Between
+/// them, the curvatures m solve m₋ + 4 m + m₊ = 6 times the second difference.
 fn spline_weights(position: f64, n_nodes: usize) -> Vec<f64> {
     if n_nodes == 1 {
         return vec![1.0];
@@ -105,7 +107,7 @@ fn curvatures(n_nodes: usize, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
     let last = n_nodes - 1;
     let mut m = vec![0.0; n_nodes];
     (m[1], m[last - 1]) = (difference(1), difference(last - 1));
-    // Elimination and back substitution of the tridiagonal system between.
+    // Elimination and back substitution of the tridiagonal system between these nodes.
     let mut pivot = vec![1.0; n_nodes];
     let mut upper = vec![0.0; n_nodes];
     for i in 2..last - 1 {

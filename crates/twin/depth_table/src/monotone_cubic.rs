@@ -1,7 +1,7 @@
 //! Shape-preserving interpolation of a table.
 
-/// Monotone piecewise cubic through a table, known as PCHIP (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984): it never overshoots the
-/// data.
+/// Monotone piecewise cubic through a table, known as PCHIP (Fritsch and Butland, SIAM J. Sci.
+/// Stat. Comput. 5, 1984). It never overshoots the data.
 #[derive(Clone, Debug)]
 pub struct MonotoneCubic {
     x: Vec<f64>,
@@ -10,7 +10,8 @@ pub struct MonotoneCubic {
 }
 
 impl MonotoneCubic {
-    /// Interpolates `y` over strictly increasing `x`; `None` if there are no points, the lengths differ, or `x` does not increase.
+    /// Interpolates `y` over strictly increasing `x`; `None` if there are no points, the lengths
+    /// differ, or `x` does not increase.
     #[must_use]
     pub fn new(x: Vec<f64>, y: Vec<f64>) -> Option<Self> {
         if x.is_empty() || x.len() != y.len() || x.windows(2).any(|pair| pair[0] >= pair[1]) {
@@ -20,7 +21,8 @@ impl MonotoneCubic {
         Some(Self { x, y, slope })
     }
 
-    /// The value at a point; beyond the table's last point, straight on with the slope that it ends with.
+    /// The value at a point. Beyond the table's last point, it continues in a straight line with
+    /// the slope at its end.
     #[must_use]
     pub(crate) fn straight_on(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
@@ -48,7 +50,8 @@ impl MonotoneCubic {
     }
 }
 
-/// Weighted harmonic means of neighbouring secants, zero at an extremum; at the ends the secant itself.
+/// Weighted harmonic means of neighbouring secants, zero at an extremum; at the ends, the secant
+/// itself.
 fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = x.len();
     if n == 1 {

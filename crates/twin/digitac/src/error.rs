@@ -1,4 +1,4 @@
-//! What can go wrong on the way to a twin.
+//! Errors of making and using a twin.
 
 use std::path::Path;
 
@@ -6,21 +6,21 @@ use std::path::Path;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DigitacError {
-    /// The simulation could not deliver.
+    /// The simulation failed.
     #[error("the simulation failed: {0}")]
     Simulation(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// A model's folder could not be written.
     #[error(transparent)]
     Store(#[from] twintac_store::StoreError),
-    /// The simulation delivered another number of tables over depth than was asked for.
+    /// The number of tables over depth from the simulation differs from the number of requests.
     #[error("expected {expected} tables over depth, found {found}")]
     DepthTableCount {
-        /// Tables that were asked for.
+        /// Requested tables.
         expected: usize,
-        /// Tables that came.
+        /// Tables that were delivered.
         found: usize,
     },
-    /// The simulation delivered a table over depth that can't be used.
+    /// The simulation delivered a table over depth that cannot be used.
     #[error("table over depth {index}: {source}")]
     DepthTable {
         /// Number of the request, from 0.
@@ -28,7 +28,7 @@ pub enum DigitacError {
         /// What is wrong with it.
         source: twintac_depth_table::DepthTableError,
     },
-    /// A press contradicts itself, or the sensor.
+    /// A press that is inconsistent, or that does not match the sensor.
     #[error("press `{press}`: {problem}")]
     Press {
         /// The press's name.
@@ -36,7 +36,7 @@ pub enum DigitacError {
         /// What is wrong with it.
         problem: String,
     },
-    /// There is too little to work with.
+    /// There are too few presses or other data.
     #[error("expected {expected}, found {found}")]
     TooFew {
         /// What is needed, and for what.
@@ -44,7 +44,7 @@ pub enum DigitacError {
         /// What is there.
         found: String,
     },
-    /// A setting cannot be what it is.
+    /// A setting outside its range.
     #[error("setting {0}")]
     Setting(#[from] twintac_config::Problem),
     /// The loss became infinite or NaN.
@@ -57,7 +57,7 @@ pub enum DigitacError {
         /// The loss.
         loss: f64,
     },
-    /// Who followed the training broke it off.
+    /// The training was stopped by its caller.
     #[error("the training was stopped")]
     Stopped,
     /// A file of a model cannot be read or written.
@@ -65,7 +65,7 @@ pub enum DigitacError {
     File {
         /// The file.
         path: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A model is incomplete, altered, or of another version.

@@ -1,4 +1,4 @@
-//! Models in folders: read as they were written, and refused where they cannot be.
+//! Models in folders: read as they were written, and refused where they are damaged.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -74,7 +74,7 @@ fn a_model_survives_its_folder_and_notices_damage() {
     assert!(message(&folder).contains("version 7"), "{}", message(&folder));
 }
 
-/// Writes one number or list of a model's record anew, and its checksum.
+/// Replaces one number or list of a model's record, and updates its checksum.
 fn change_record(folder: &std::path::Path, pointer: &str, value: serde_json::Value) {
     let read = |name: &str| -> serde_json::Value {
         serde_json::from_slice(&std::fs::read(folder.join(name)).unwrap()).unwrap()
@@ -85,7 +85,7 @@ fn change_record(folder: &std::path::Path, pointer: &str, value: serde_json::Val
     say_checksums(folder);
 }
 
-/// Writes checksums of a model's files as they are.
+/// Writes checksums of the present files of a model.
 fn say_checksums(folder: &std::path::Path) {
     use sha2::{Digest, Sha256};
     let path = folder.join("checksums.json");

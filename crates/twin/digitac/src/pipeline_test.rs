@@ -1,4 +1,4 @@
-//! From a recording to a twin, against formulas whose truth is known.
+//! From a recording to a twin, tested with formulas whose true values are known.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -137,7 +137,7 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
     let mut truth = Truth::new();
     truth.offsets_mm.truncate(1);
     let mut made = make(&truth, 21);
-    // A barometer that saturates, and a physics that does not know it.
+    // Barometers that saturate, and physics without a nonlinearity.
     for press in &mut made.presses {
         let readings = press.readings_kpa.iter_mut().flatten();
         readings.for_each(|r| *r -= 0.001 * *r * r.abs());
@@ -155,7 +155,7 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
         error(&trained[0]),
         error(&trained[1])
     );
-    // Ten times the load: no worse than the bound allows.
+    // At ten times the load, the correction stays within its limit.
     let mut features = made.presses[5].features.clone();
     features
         .pressure_kpa
@@ -170,7 +170,7 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
     let size = |row: &Vec<f64>| row.iter().map(|p| p * p).sum::<f64>().sqrt();
     let largest = physical.iter().map(size).fold(0.0, f64::max);
     for (physical, found) in physical.iter().flatten().zip(found.iter().flatten()) {
-        // The limit, and what the memory may make of it at most.
+        // The limit of the correction, with the largest possible effect of the relaxation on it.
         assert!(
             (physical - found).abs() < 0.3 * 2.0 * largest,
             "{physical} {found}"
@@ -244,7 +244,7 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
     )
     .unwrap()
     .unwrap();
-    // A radius that is a little off shifts all heights alike.
+    // A small error of the radius shifts all heights alike.
     assert!(
         (found.contact_offset_mm.value - known_mm - 0.07).abs() < 0.01,
         "{found:?}"
@@ -300,13 +300,13 @@ fn a_gel_that_no_press_touches_is_not_adapted_to() {
     };
     refused(choose_presses(&sensor, &[1, 2, 3], 2, 1).unwrap_err());
     refused(adapt(&sensor, &[2, 7, 12]).unwrap_err());
-    // Judged all the same: no frame is in contact, and no figure is said.
+    // The evaluation works all the same: no frame is in contact, and the figure is `None`.
     let pairs = pair(&other, &places, &tables, &made.bench, &PairSettings::default()).unwrap();
     let found = evaluate(&twin, &pairs, &[0, 1, 2], &made.scale, None)
         .twin
         .overall;
     assert_eq!(found.nearest_in_contact, Mean::default());
-    // Nor is a contact height fitted to what nobody feels.
+    // A contact height is not fitted to presses without contact either.
     let height = recalibrate(
         &other,
         (&places, &tables),
@@ -373,7 +373,8 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
     };
     assert!(error(&found.twin) < 1.0 && error(&twin) > 5.0);
 
-    // One press beside the first taxel tells of the last one no more than chips of one gel differ: by a fifth.
+    // For the last taxel, one press beside the first taxel leaves the usual difference between the
+    // chips of one gel: a fifth.
     let by_one = adapted(&[1]);
     let relative = |adapted: &Adapted, taxel: usize| {
         adapted.adaptation.gain[taxel].uncertainty / adapted.adaptation.gain[taxel].value
@@ -395,7 +396,8 @@ fn a_port_beside_its_description_is_not_carried_over_to_another_sensor() {
     let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 1))
         .remove(0)
         .twin;
-    // The tables have no slopes by the ports' places: presses say nothing of them.
+    // The tables have no derivatives with respect to the ports' locations, so presses carry no
+    // information about them.
     let shifted = PortEstimate {
         shift_mm: [0.3, 0.0],
         wider_mm: 0.0,
@@ -513,7 +515,7 @@ fn what_is_held_out_is_judged_by_what_teaches() {
                 fold.held_out
             );
             assert_eq!(found.kernel.is_none(), by == HeldOut::Taxel);
-            // Of a file of which nothing teaches, three presses give the height.
+            // In a file without training presses, three presses are used for the contact height.
             let spent = if by == HeldOut::File { 3 } else { 0 };
             assert_eq!(found.n_presses, fold.split.test.len() - spent);
         }

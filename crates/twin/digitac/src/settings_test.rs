@@ -1,4 +1,4 @@
-//! Settings at the ends of their ranges and beyond, and what nothing judges.
+//! Settings at the ends of their ranges and beyond, and presses that cannot be evaluated.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -10,7 +10,8 @@ use crate::pipeline_test::{make, settings, train_quietly, unknown_tip};
 use crate::synthetic::{Formula, Truth};
 use crate::*;
 
-/// The ends of ranges, and the zeros that switch something off: a bench is fitted all the same, and a twin trained.
+/// With settings at the ends of their ranges, and with zeros that disable something, a test setup
+/// is fitted and a twin is trained all the same.
 #[test]
 fn the_ends_of_ranges_are_settings_like_others() {
     let mut truth = Truth::new();

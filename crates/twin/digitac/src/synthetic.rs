@@ -1,5 +1,5 @@
-//! A gel of formulas: Hertz's contact over a kernel that widens with the contact, so that the crate can be
-//! tested without finite elements.
+//! A gel of formulas: Hertz's contact, with pressures from a kernel that widens with the contact,
+//! so that the crate can be tested without finite elements.
 
 use glam::DVec3;
 use twintac_depth_table::{
@@ -89,13 +89,13 @@ impl DepthTableSource for Formula {
     }
 }
 
-/// What the formulas are made to hide.
+/// True values that the fits have to find.
 #[derive(Clone)]
 pub(crate) struct Truth {
     pub(crate) radius_mm: f64,
     pub(crate) gains: Gains,
     pub(crate) offsets_mm: Vec<f64>,
-    /// Over the largest reading.
+    /// Standard deviation of the noise over the largest reading.
     pub(crate) noise: f64,
     pub(crate) modulus: f64,
 }

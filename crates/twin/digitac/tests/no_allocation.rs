@@ -1,4 +1,4 @@
-//! Steps allocate nothing.
+//! Steps allocate no memory.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 #![allow(unsafe_code)] // an allocator cannot be written without
@@ -12,10 +12,10 @@ use twintac_depth_table::{DepthTable, PressFrame, SolveQuality};
 use twintac_shape::Pose;
 
 #[path = "../examples/step_rate/invented.rs"]
-#[allow(dead_code)] // what the benchmark alone needs
+#[allow(dead_code)] // items that only the benchmark uses
 mod invented;
 
-/// The system's allocator, which counts.
+/// The system's allocator with a counter.
 struct Counting;
 
 thread_local! {
@@ -26,22 +26,22 @@ fn count() {
     N_ALLOCATIONS.set(N_ALLOCATIONS.get() + 1);
 }
 
-// SAFETY: everything is passed on to the system's allocator.
+// SAFETY: every call is forwarded to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         count();
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the conditions.
         unsafe { System.realloc(pointer, layout, size) }
     }
 }

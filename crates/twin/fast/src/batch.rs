@@ -1,10 +1,11 @@
-//! Many sensors read in one call.
+//! Evaluation of many sensors in one call.
 
 use rayon::prelude::*;
 
 use crate::{Body, FastGel, FastReader, Touch};
 
-/// Fast gels of many sensors of one kind. It owns all memory that readings need.
+/// Evaluates the surrogates of many sensors of one kind. It owns all memory that an evaluation
+/// needs.
 #[derive(Clone, Debug)]
 pub struct FastBatch {
     /// One for each thread.
@@ -13,7 +14,7 @@ pub struct FastBatch {
 }
 
 impl FastGel {
-    /// Prepares so many threads to read sensors.
+    /// Prepares to evaluate many sensors on this number of threads.
     #[must_use]
     pub fn batch(&self, n_threads: usize) -> FastBatch {
         FastBatch {
@@ -24,16 +25,20 @@ impl FastGel {
 }
 
 impl FastBatch {
-    /// What the gels do under what touches each of them. A sensor's numbers do not depend on the other sensors, their number, or threads.
+    /// Pressures and wrenches of many sensors, each under its own touches. The numbers of a sensor
+    /// do not depend on the other sensors, on their number, or on the number of threads.
     ///
-    /// - `bodies`: everything that touches; any number of sensors may share a body.
-    /// - `touches`: of the first sensor, then of the second, and so on.
-    /// - `ends`: where each sensor's touches end. `[n_sensors]`, the last is the number of touches.
-    /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_sensors * n_taxels]`
-    /// - `wrench`: is written; force, N, and torque about the top of the gel's middle, N mm. `[n_sensors]`
+    /// - `bodies`: all rigid bodies; any number of sensors may share a body.
+    /// - `touches`: those of the first sensor, then those of the second, and so on.
+    /// - `ends`: where the touches of each sensor end. `[n_sensors]`, the last is the number of
+    ///   touches.
+    /// - `pressure_kpa`: output; hydrostatic pressure at each port, kPa. `[n_sensors * n_taxels]`
+    /// - `wrench`: output; force on each gel, N, and torque about the top of the gel's middle, N
+    ///   mm. `[n_sensors]`
     ///
     /// # Panics
-    /// Slices of other lengths, ends that decrease, a body that is not there, a pose that is not finite.
+    /// If a slice has another length, if ends decrease, if a touch names a body that does not
+    /// exist, or if a pose is not finite.
     pub fn read(
         &mut self,
         bodies: &[Body],
@@ -55,7 +60,7 @@ impl FastBatch {
             "the last end is the number of touches"
         );
         if let [reader] = self.readers.as_mut_slice() {
-            // Nobody has to be woken.
+            // A single thread does not need the thread pool.
             reader.read_many(bodies, touches, ends, pressure_kpa, wrench);
             return;
         }

@@ -1,4 +1,5 @@
-//! A thin body, known by samples, column by column from below: what is above it is inside it too.
+//! A thin body that is known by samples, followed upward in columns: everything above the body
+//! counts as inside it.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -7,26 +8,29 @@ use glam::{Mat3, Vec2, Vec3};
 
 use crate::distance::{Body, Field, Form, REACH_MM};
 
-/// Columns beside those that are asked for: how far a body reaches aside is told by what is beside it.
+/// Extra columns on each side of those that are asked for: the lateral extent of a body follows
+/// from its neighbouring columns.
 pub(crate) const AROUND: i32 = 2;
 
-/// How far off columns tell how far a body reaches aside, in distances of columns.
+/// Distance up to which columns are searched for the lateral extent of a body, in column spacings.
 const FARTHEST: i32 = 3;
 
-/// Steps upward, mm: below a body at most, and in it or above it.
+/// Largest step upward, mm: below a body, and in it or above it.
 const LARGEST_MM: [f32; 2] = [0.5, 0.2];
 
-/// The smallest step, mm, and steps as parts of the distance to the nearest face, likewise.
+/// Smallest step, mm; and step as a fraction of the distance to the nearest face, below a body and
+/// in it or above it.
 const SMALLEST_MM: f32 = 0.03;
 const OF_DISTANCE: [f32; 2] = [0.9, 0.25];
 
-/// How fast the distance grows upward from what is a side, and from what is a top. Sides lean by 20 degrees where shapes that were taught are tilted by as much.
+/// Rate at which the distance grows upward from a face that is a side, and from one that is a top.
+/// Training shapes are tilted so that their sides lean by up to 20 degrees.
 const RISES: [f32; 2] = [0.35, 0.5];
 
-/// Where columns stand.
+/// A grid of vertical columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
-    /// Place of the column in the column and row 0, mm.
+    /// Position of the column with index 0 in row 0, mm.
     pub(crate) first_mm: [f32; 2],
     pub(crate) spacing_mm: f32,
     pub(crate) columns: Range<i32>,
@@ -39,32 +43,34 @@ pub(crate) struct Standing<'a> {
     pub(crate) body: &'a Body,
     pub(crate) body_from_gel: Mat3,
     pub(crate) origin: Vec3,
-    /// A height below it, mm.
+    /// A height below the body, mm.
     pub(crate) from_mm: f32,
 }
 
 /// Distances to a body at one level of a column, mm.
 #[derive(Clone, Copy, Debug, Default)]
 struct Level {
-    /// To its nearest face.
+    /// To the nearest face.
     plain_mm: f32,
-    /// The least of those here and below.
+    /// The smallest distance to the nearest face, here and below.
     least_mm: f32,
-    /// As if it went on above its tops, however far it reaches aside.
+    /// Distance to the body continued upward above its tops, without regard to its lateral extent.
     open_mm: f32,
-    /// How far there is a top here or below, from 0 to 1.
+    /// Degree to which there is a top here or below, from 0 to 1.
     top: f32,
-    /// Whether that is in the body, or above it.
+    /// Whether the level is in the body or above it.
     is_inside: bool,
 }
 
 thread_local! {
-    /// What is known of the columns about a body, level by level. It is kept, so that readings allocate nothing.
+    /// Levels of all columns around a body. The memory is kept, so that evaluations do not
+    /// allocate.
     static KNOWN: RefCell<Vec<Level>> = const { RefCell::new(Vec::new()) };
 }
 
 impl Columns {
-    /// Calls `put` with each column and row and the distances there, mm, to a body that goes on above its tops. `levels_mm`: heights in a column, falling.
+    /// Calls `put` with each column and row and the distances there, mm, to a body that is
+    /// continued upward above its tops. `levels_mm`: heights in a column, decreasing.
     pub(crate) fn open<const N: usize>(
         &self,
         standing: &Standing<'_>,
@@ -116,7 +122,8 @@ impl Columns {
         });
     }
 
-    /// How far a body at most reaches aside of a point in it: no farther than what is beside it leaves.
+    /// Upper limit of the lateral extent of a body at a point inside it, mm, from the neighbouring
+    /// columns that are outside.
     fn reach_aside_mm(&self, [i, j]: [i32; 2], level_of: impl Fn(usize) -> Level) -> f32 {
         let n_columns = self.columns.len();
         let mut least_mm = f32::INFINITY;
@@ -135,31 +142,33 @@ impl Columns {
     }
 }
 
-/// What is known of a column up to some height.
+/// State of the way up a column.
 #[derive(Clone, Copy, Debug)]
 struct Climb {
     height_mm: f32,
     plain_mm: f32,
     least_mm: f32,
     open_mm: f32,
-    /// How fast the distance grew at most on the way.
+    /// The largest rate at which the distance grew on the way.
     steepest: f32,
-    /// How fast it fell where the body began; none below that.
+    /// Rate at which the distance fell where the body began; `None` below the body.
     slope: Option<f32>,
 }
 
 impl Climb {
-    /// How far it is to where the distance is asked for next, mm: what is asked depends on the body alone, and not on where the levels are.
+    /// Distance to the height at which the distance is evaluated next, mm. It depends on the body
+    /// alone, not on where the levels are.
     fn step_mm(&self) -> f32 {
         let place = usize::from(self.slope.is_some());
         (OF_DISTANCE[place] * self.plain_mm.abs()).clamp(SMALLEST_MM, LARGEST_MM[place])
     }
 
-    /// As far as a height, no farther than the next step.
+    /// Continues to a height that is no farther than the next step.
     fn up_to(&self, height_mm: f32, plain_mm: f32) -> Self {
         let way_mm = height_mm - self.height_mm;
         let more_mm = plain_mm - self.plain_mm;
-        // What is farther away is known to be so, no more. A part of a step counts as such.
+        // Distances beyond the reach are only known to be beyond it. An incomplete step counts as a
+        // fraction of a step.
         let rise = if self.plain_mm < REACH_MM {
             more_mm / self.step_mm()
         } else {
@@ -178,7 +187,7 @@ impl Climb {
     }
 }
 
-/// The levels of a column, from below.
+/// The levels of a column, computed from below.
 fn climb<const N: usize>(levels_mm: [f32; N], from_mm: f32, distance_mm: impl Fn(f32) -> f32) -> [Level; N] {
     let plain_mm = distance_mm(from_mm);
     let mut climb = Climb {

@@ -1,4 +1,8 @@
-//! What the gel is touched by: for each point of the grid, how far inside a body it lies, or how close to one.
+//! The contact geometry as network inputs: how far each point of the grids lies inside a body, or
+//! how close to one.
+//!
+//! The value at a distance `d` is the proximity `(reach - d) / reach`, at least 0: 0 at the reach
+//! and beyond, 1 at the body's surface, more inside.
 
 use std::ops::Range;
 
@@ -11,25 +15,27 @@ use crate::distance::{Body, Field, Form, REACH_MM, Upward};
 use crate::simd::dispatch;
 use crate::surface::SurfaceGrid;
 
-/// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses. Where points are farther
-/// apart than [`SPACING_MM`], they lie in proportion.
+/// Heights relative to the undeformed surface at which distances are evaluated, mm. The deeper ones
+/// show how deep a narrow body presses. They scale with the spacing of the points where it is
+/// larger than [`SPACING_MM`].
 const LEVELS_MM: [f32; N_CHANNELS] = [0.0, -1.5, -3.0];
 
-/// Deeper points are no deeper to the network, mm; in the same proportion.
+/// Largest depth inside a body that the network sees, mm; it scales with the spacing likewise.
 const DEEPEST_MM: f32 = 4.0;
 
-/// Distance of the points for which both are, mm.
+/// Spacing of the points for which both constants hold, mm.
 const SPACING_MM: f32 = 2.0;
 
-/// Gaps up to which something may touch between points, and beyond which nothing does, in distances of points: an end with a radius of 2.5 mm, in the middle of four points
-/// of PhysTac's grid, has a gap of a fifth to them when it touches.
+/// Gaps to the nearest point, in grid spacings: up to the first a body may touch between the
+/// points, beyond the second it does not. An end with a radius of 2.5 mm that touches in the middle
+/// of four points of PhysTac's grid has a gap of a fifth of the spacing to them.
 pub(crate) const TOUCHED: [f32; 2] = [0.05, 0.25];
 
-/// Numbers for each point.
+/// Number of heights, thus of values at each point.
 pub(crate) const N_CHANNELS: usize = 3;
 
-/// Heights above the undeformed surface at which distances are taken around points so far apart,
-/// mm.
+/// Heights relative to the undeformed surface at which distances are evaluated for points of this
+/// spacing, mm.
 pub(crate) fn levels_mm(spacing_mm: f32) -> [f32; N_CHANNELS] {
     let scale = (spacing_mm / SPACING_MM).max(1.0);
     LEVELS_MM.map(|level_mm| scale * level_mm)
@@ -49,7 +55,7 @@ struct ContactGrid {
     spacing_mm: f32,
     n: [usize; 2],
     height_mm: Vec<f32>,
-    /// Of the highest point.
+    /// Height of the highest point.
     highest_mm: f32,
     levels_mm: [f32; N_CHANNELS],
     deepest_mm: f32,
@@ -63,13 +69,14 @@ impl ContactPoints {
         }
     }
 
-    /// Numbers that [`Self::fill`] writes.
+    /// Number of values that [`Self::fill`] writes.
     pub(crate) fn n_inputs(&self) -> usize {
         self.n_inputs
     }
 
-    /// Whether something touches, by the point that is nearest to a body: 1 where it lies inside or nearly so, 0 where it lies so far outside that nothing reaches into the
-    /// gel between the points either.
+    /// Whether something touches, from the point nearest to a body: 1 where this point lies inside
+    /// or nearly so, 0 where it lies so far outside that the body does not reach into the gel
+    /// between the points either.
     pub(crate) fn touched(&self, inputs: &[f32]) -> f32 {
         let nearest = inputs
             .iter()
@@ -80,8 +87,7 @@ impl ContactPoints {
         ((far_mm - gap_mm) / (far_mm - near_mm)).clamp(0.0, 1.0)
     }
 
-    /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its
-    /// surface, more inside. `[n_points * N_CHANNELS]`
+    /// Writes the proximity of the bodies at each point and level. `[n_points * N_CHANNELS]`
     pub(crate) fn fill<'a>(
         &self,
         bodies: impl Iterator<Item = (&'a Body, Pose)> + Clone,
@@ -114,7 +120,7 @@ impl ContactGrid {
     #[inline(always)]
     fn add(&self, body: &Body, gel_from_body: &Pose, inputs: &mut [f32]) {
         let (position_mm, rotation) = (gel_from_body.position_mm, gel_from_body.rotation);
-        // It would read as if nothing touched.
+        // A pose that is not finite would give the result of no contact.
         assert!(
             position_mm.is_finite() && rotation.is_finite(),
             "a pose of finite numbers"
@@ -127,7 +133,7 @@ impl ContactGrid {
             return;
         }
         let upward = Upward::new(body_from_gel.z_axis.into());
-        // What is less deep than half of its thickness has its top nowhere near a point.
+        // A body that is less deep than half of its thickness has its top far from all points.
         let is_open = body.is_thin(self.highest_mm - low.z - REACH_MM, upward);
         let [n_x, n_y] = self.n;
         let range = |axis: usize| {
@@ -164,7 +170,7 @@ impl ContactGrid {
         }
     }
 
-    /// The points of a thin body's box.
+    /// Adds a thin sampled body at the points within its box.
     fn add_columns(
         &self,
         columns: &Range<usize>,
@@ -196,7 +202,7 @@ impl ContactGrid {
         });
     }
 
-    /// The points of a body's box.
+    /// Adds a body at the points within its box.
     #[inline(always)]
     fn add_placed(&self, placed: &Placed, inputs: &mut [f32], field: &impl Field) {
         let n_x = self.n[0];
@@ -218,7 +224,8 @@ impl ContactGrid {
                 for (level, (input, level_mm)) in input.iter_mut().zip(levels_mm).enumerate() {
                     let distance_mm = field.distance_mm(plane + up * (z_mm + level_mm));
                     let share = share(larger(distance_mm, least_mm));
-                    // What is not near the surface is not near anything below it.
+                    // A body whose surface point is out of reach is out of reach at the deeper
+                    // levels too.
                     if level == 0 && share == 0.0 {
                         break;
                     }
@@ -267,19 +274,19 @@ impl<'b, B: Iterator<Item = (&'b Body, Pose)> + Clone> WithSimd for Filling<'_, 
     }
 }
 
-/// How much of the reach around a body is left at a distance, in units of the reach.
+/// The proximity at a distance.
 #[inline(always)]
 fn share(distance_mm: f32) -> f32 {
     larger((REACH_MM - distance_mm) * (1.0 / REACH_MM), 0.0)
 }
 
-/// The larger of two numbers that are both there, in one instruction: `f32::max` looks for what is not a number.
+/// The larger of two numbers in one instruction; `f32::max` also checks for NaN.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// A body in the gel's frame, and the points of the grid that it can be near.
+/// A body in the gel's frame, and the points of the grid within its box.
 struct Placed {
     body_from_gel: Mat3,
     origin: Vec3,

@@ -1,4 +1,5 @@
-//! A fast gel as one file: safetensors, with what is no tensor as JSON in its header.
+//! A surrogate as one file: safetensors, with everything that is not a tensor as JSON in the
+//! header.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,15 +18,15 @@ use crate::novelty::{Coverage, N_TRAITS, Nearest, Novelty};
 use crate::surface::SurfaceGrid;
 use crate::taught::{Port, TaughtGel};
 
-/// The header's entry.
+/// Name of the header's entry.
 const ENTRY: &str = "twintac-fast";
 
 /// Version of the file's layout.
 const VERSION: u32 = 6;
 
-/// Bytes that are no fast gel: what is wrong with them.
+/// Why bytes are not a readable surrogate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("this is not a fast twin that can be read: {0}")]
+#[error("this is not a readable surrogate of the gel: {0}")]
 pub struct FastFileError(String);
 
 impl FastFileError {
@@ -34,36 +35,39 @@ impl FastFileError {
     }
 }
 
-/// What every version has.
+/// What the header of every version has.
 #[derive(Deserialize)]
 struct Version {
     version: u32,
 }
 
-/// What is no tensor.
+/// Everything that is not a tensor.
 #[derive(Serialize, Deserialize)]
 struct Header {
     version: u32,
     sensor: String,
     gel: TaughtGel,
     ports: Vec<Port>,
-    /// Where it is read.
+    /// Locations at which the surrogate is evaluated.
     ports_mm: Vec<glam::DVec2>,
     layout: Layout,
     center_mm: glam::DVec3,
-    /// The distance from what was taught that counts as a novelty of 1.
+    /// Distance to the nearest training contact that counts as a score of 1.
     novelty_unit: f32,
     error_of_one_lesson: f32,
 }
 
-/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
+/// PhysTac's surrogate, made by
+/// `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
-/// The fingertip's, made by `twintac fast train --sensor sensors/phystac-tip.toml --lessons 800 --exams 50 --slides 8 --steps 8000`.
+/// The fingertip's surrogate, made by
+/// `twintac fast train --sensor sensors/phystac-tip.toml --lessons 800 --exams 50 --slides 8
+/// --steps 8000`.
 const PHYSTAC_TIP: &[u8] = include_bytes!("../built_in/phystac-tip.safetensors");
 
 impl FastGel {
-    /// The fast gel of PhysTac, which is built in.
+    /// The built-in surrogate of PhysTac's gel.
     ///
     /// # Errors
     /// None, unless this crate was compiled with another file in its place.
@@ -71,7 +75,7 @@ impl FastGel {
         Self::from_bytes(PHYSTAC)
     }
 
-    /// The fast gel of PhysTac's domed fingertip, which is built in.
+    /// The built-in surrogate of the gel of PhysTac's domed fingertip.
     ///
     /// # Errors
     /// None, unless this crate was compiled with another file in its place.
@@ -79,7 +83,7 @@ impl FastGel {
         Self::from_bytes(PHYSTAC_TIP)
     }
 
-    /// The gel as the bytes of a file.
+    /// The surrogate as the bytes of a file.
     ///
     /// # Errors
     /// None that is known.
@@ -137,10 +141,10 @@ impl FastGel {
         safetensors::serialize(views, Some(entries)).map_err(FastFileError::new)
     }
 
-    /// Reads what [`Self::to_bytes`] made.
+    /// Reads the bytes that [`Self::to_bytes`] made.
     ///
     /// # Errors
-    /// Bytes that are something else, and a newer version.
+    /// Bytes that are something else, or of another version.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FastFileError> {
         let (_, entries) = SafeTensors::read_metadata(bytes).map_err(FastFileError::new)?;
         let entries = entries.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
@@ -199,7 +203,7 @@ impl FastGel {
     }
 }
 
-/// A network whose layers fit each other, its inputs and its outputs.
+/// Reads a network, and checks that its layers fit each other, its inputs and its outputs.
 fn network(
     tensors: &SafeTensors<'_>,
     name: &str,
@@ -228,7 +232,7 @@ fn network(
     })
 }
 
-/// A layer of so many inputs.
+/// Reads a layer with this number of inputs.
 fn layer(tensors: &SafeTensors<'_>, name: &str, n_inputs: usize) -> Result<Linear, FastFileError> {
     let bias = tensor(tensors, &format!("{name}.bias"), &[None])?;
     let n_columns = bias.len();
@@ -243,7 +247,7 @@ fn layer(tensors: &SafeTensors<'_>, name: &str, n_inputs: usize) -> Result<Linea
     })
 }
 
-/// The numbers of a tensor of this shape; `None` where any length will do.
+/// The numbers of a tensor of this shape; `None` stands for any length.
 fn tensor(tensors: &SafeTensors<'_>, name: &str, shape: &[Option<usize>]) -> Result<Vec<f32>, FastFileError> {
     let found = tensors.tensor(name).map_err(FastFileError::new)?;
     let fits =
@@ -255,7 +259,9 @@ fn tensor(tensors: &SafeTensors<'_>, name: &str, shape: &[Option<usize>]) -> Res
     let numbers = found.data().as_chunks::<4>().0.iter();
     let numbers: Vec<f32> = numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect();
     if !numbers.iter().all(|number| number.is_finite()) {
-        return Err(FastFileError::new(format!("`{name}` has numbers that are none")));
+        return Err(FastFileError::new(format!(
+            "`{name}` has numbers that are not finite"
+        )));
     }
     Ok(numbers)
 }

@@ -1,4 +1,4 @@
-//! Where a body is carried by the gel.
+//! The area over which the gel carries a body.
 
 use glam::DVec2;
 
@@ -6,29 +6,32 @@ use crate::contact::N_CHANNELS;
 use crate::distance::REACH_MM;
 use crate::surface::SurfaceGrid;
 
-/// Points that are inside a body by more than this part of the deepest carry it: under a ball that is the area that the finite elements touch.
+/// Points whose depth inside a body is more than this fraction of the largest depth carry it: under
+/// a ball this gives the contact area of the FEM solution.
 const CARRYING: f32 = 0.38;
 
-/// Width of the change from points that do not to points that do, as part of the deepest.
+/// Width of the transition between points that do not carry and points that do, as a fraction of
+/// the largest depth.
 const CHANGE: f32 = 0.24;
 
-/// The gel under a body is no thinner than this part of what it was: the reach of distances ends there.
+/// Smallest remaining height of the gel under a body, as a fraction of its undeformed height: the
+/// reach of distances ends there.
 const THINNEST: f64 = 0.4;
 
-/// The points of a grid on which a body stands.
+/// The points of a grid that carry a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Footprint<'a> {
     grid: &'a SurfaceGrid,
-    /// What touches the points. `[n_points * N_CHANNELS]`
+    /// Network inputs of the grid's points. `[n_points * N_CHANNELS]`
     inputs: &'a [f32],
-    /// How far the deepest point is inside the body, in units of the reach.
+    /// Depth of the deepest point inside the body, in units of the reach.
     deepest: f32,
-    /// Height of the undeformed gel there, mm.
+    /// Height of the undeformed gel at that point, mm.
     height_mm: f64,
 }
 
 impl<'a> Footprint<'a> {
-    /// Where what touches is carried; `None` where nothing touches.
+    /// The footprint of bodies; `None` where nothing touches.
     pub(crate) fn of(grid: &'a SurfaceGrid, inputs: &'a [f32]) -> Option<Self> {
         let points = inputs.as_chunks::<N_CHANNELS>().0.iter().zip(&grid.height_mm);
         let depths = points.map(|(point, height_mm)| (point[0] - 1.0, *height_mm));
@@ -41,7 +44,7 @@ impl<'a> Footprint<'a> {
         })
     }
 
-    /// Places that carry, mm, and how much of its area each carries.
+    /// Locations that carry, mm, each with the fraction of its area that carries.
     pub(crate) fn places(&self) -> impl Iterator<Item = (DVec2, f32)> + '_ {
         let points = self.inputs.as_chunks::<N_CHANNELS>().0;
         let carries = |inside: f32| ((inside / self.deepest - CARRYING) / CHANGE + 0.5).clamp(0.0, 1.0);
@@ -58,7 +61,7 @@ impl<'a> Footprint<'a> {
         spacing_mm * spacing_mm * self.places().map(|(_, share)| share).sum::<f32>()
     }
 
-    /// Height of the gel that is left under the deepest point, mm.
+    /// Remaining height of the gel under the deepest point, mm.
     pub(crate) fn thickness_mm(&self) -> f64 {
         (self.height_mm - f64::from(self.deepest * REACH_MM)).max(THINNEST * self.height_mm)
     }

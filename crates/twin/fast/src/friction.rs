@@ -1,4 +1,4 @@
-//! Friction of a body on the gel: the gel's top is sheared with the body, until it slips.
+//! Friction of a body on the gel: the gel's top is sheared with the body until the body slips.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -11,46 +11,56 @@ use crate::shear::Shear;
 use crate::taught::{FastGelMismatch, TaughtGel};
 use crate::{Body, FastReader};
 
-/// Radius of the smallest contact, mm: a smaller one lies between the points of the grid.
+/// Radius of the smallest contact, mm: a smaller contact lies between the points of the grid.
 const LEAST_RADIUS_MM: f64 = 0.5;
 
-/// Lever arm of friction that turns a contact about its middle, as part of its radius: 3π/16 for the pressure under a ball, 2/3 for an even one.
+/// Lever arm of the friction against rotation about the contact's middle, as a fraction of the
+/// contact's radius: 3π/16 for the pressure under a ball, 2/3 for uniform pressure.
 const ARM_OF_RADIUS: f64 = 0.6;
 
-/// Friction of one body on one gel, from one moment to the next: what it adds to the force, the torque and the pressures at the ports, as the fast gel was taught
-/// without.
+/// Friction of one body on one gel, frame by frame. It adds to the force, the torque and the
+/// pressures at the ports of a surrogate, which was trained without friction.
 ///
-/// Sticking, the gel resists as an elastic layer on a rigid base does under a rigid disc of the contact's area: with `8 G a / (2 - ν) (1 + a / 2 h)` along the surface
-/// and `16/3 G a³` about the vertical (Gazetas, 1991, "Formulas and charts for impedances of surface and embedded foundations"), from where the body came on
-/// (Cundall and Strack, 1979). Force and torque together slip at Coulomb's limit (an ellipsoid as limit surface: Howe and Cutkosky, 1996). Beside PhysTac's finite
-/// elements with friction, pushed aside in the gel's middle, the force is right to 16 % under its ball, cube and cylinder, and up to 30 % too low under its ring.
+/// While the body sticks, the gel resists like an elastic layer on a rigid base under a rigid disc
+/// of the contact's area: with the stiffness `8 G a / (2 - ν) (1 + a / 2 h)` along the surface and
+/// `16/3 G a³` about the vertical (Gazetas, 1991, "Formulas and charts for impedances of surface
+/// and embedded foundations"), in increments of the body's motion (Cundall and Strack, 1979). Force
+/// and torque together slip at Coulomb's limit (an ellipsoid as limit surface: Howe and Cutkosky,
+/// 1996). Compared with FEM solutions with friction of PhysTac's gel, pushed sideways in the gel's
+/// middle, the force has an error of up to 16 % under its ball, cube and cylinder, and is up to 30
+/// % too low under its ring.
 ///
-/// The pull is felt at the ports as on the floor of such a layer, as high as the gel that is left under the body: more ahead, less behind.
+/// The friction force changes the pressure at the ports as at the base of such a layer, which is as
+/// high as the gel that remains under the body: the pressure rises ahead of the body and falls
+/// behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     sensor: String,
-    /// On what; shared with the reader once it is known to be the same.
+    /// The gel that the friction acts on; shared with the reader once both are known to be the
+    /// same.
     gel: Arc<TaughtGel>,
     coefficient: f64,
     shear_modulus_kpa: f64,
     poissons_ratio: f64,
     height_mm: f64,
-    /// The top of the gel's middle, mm.
+    /// Top of the gel's middle, mm.
     center_mm: DVec3,
     shear: Shear,
     held: Option<Held>,
 }
 
-/// What a contact holds.
+/// State of a contact: pose, friction force, N, and friction torque, N mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Held {
     gel_from_body: Pose,
     force_n: DVec2,
     torque_n_mm: f64,
+    /// Displacement that the friction did not hold in the last frame, mm.
+    slipped_mm: DVec2,
 }
 
 impl Friction {
-    /// Friction on a sensor's gel with Coulomb's coefficient; nothing is held yet.
+    /// Friction on a sensor's gel with Coulomb's coefficient; without a contact at first.
     #[must_use]
     pub fn on(sensor: &Sensor, coefficient: f64) -> Self {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
@@ -67,11 +77,11 @@ impl Friction {
         }
     }
 
-    /// Whether a fast gel is the one that this friction is on, wherever it is read; from then on
-    /// that is known.
+    /// Checks that a surrogate has the gel that this friction acts on, at whatever ports it is
+    /// evaluated. The result is kept.
     ///
     /// # Errors
-    /// All that differs, in words.
+    /// All differences, in words.
     pub fn check(&mut self, reader: &FastReader) -> Result<(), FastGelMismatch> {
         let (of, gel) = reader.taught();
         if !Arc::ptr_eq(&self.gel, gel) {
@@ -81,7 +91,8 @@ impl Friction {
         Ok(())
     }
 
-    /// One more moment of a sensor that this body alone touches: what [`FastReader::read`] gives, with friction.
+    /// One more frame of a sensor that this body alone touches: the results of
+    /// [`FastReader::read`], with friction.
     ///
     /// # Panics
     /// Those of [`FastReader::read`].
@@ -96,15 +107,17 @@ impl Friction {
         self.add(reader, (body, gel_from_body), pressure_kpa, wrench);
     }
 
-    /// One more moment: adds friction to what there is without. A body that does not touch, only nearly, has no force.
+    /// One more frame: adds friction to results without it. A body that is near the gel without
+    /// touching it has no force.
     ///
-    /// - `reader`: of the gel, for where the body is carried.
-    /// - `pressure_kpa`: is changed; of everything that touches. `[n_taxels]`
-    /// - `wrench`: is changed; of this body alone: force on the gel, N, and torque about the top of the gel's middle, N mm.
+    /// - `reader`: of the gel; it gives the area that carries the body.
+    /// - `pressure_kpa`: is changed; pressures under all bodies. `[n_taxels]`
+    /// - `wrench`: is changed; of this body alone: force on the gel, N, and torque about the top of
+    ///   the gel's middle, N mm.
     ///
     /// # Panics
-    /// A slice of pressures of another length than there are taxels, a pose that is not finite, the
-    /// reader of another gel ([`Self::check`]).
+    /// If the slice of pressures has another length than there are taxels, if the pose is not
+    /// finite, or if the reader has another gel ([`Self::check`]).
     pub fn add(
         &mut self,
         reader: &mut FastReader,
@@ -126,7 +139,8 @@ impl Friction {
         }
     }
 
-    /// Adds friction to a wrench, and returns its force along the surface, N.
+    /// Adds friction to a wrench, and returns its force along the surface, N; `None` without
+    /// contact.
     fn step(&mut self, gel_from_body: &Pose, area_mm2: f32, wrench: &mut [f32; 6]) -> Option<DVec2> {
         let [fx, fy, fz, tx, ty, _] = wrench.map(f64::from);
         let normal_n = DVec3::new(fx, fy, fz).length();
@@ -134,12 +148,13 @@ impl Friction {
             self.held = None;
             return None;
         }
-        // Where the force acts on the surface, from the middle.
+        // Point of the surface on which the force acts, relative to the middle.
         let place_mm = DVec2::new(-ty, tx) / fz;
         let before = self.held.unwrap_or(Held {
             gel_from_body: *gel_from_body,
             force_n: DVec2::ZERO,
             torque_n_mm: 0.0,
+            slipped_mm: DVec2::ZERO,
         });
         let (moved_mm, turned_rad) = self.moved(&before.gel_from_body, gel_from_body, place_mm);
         let radius_mm = (f64::from(area_mm2) / PI).sqrt().max(LEAST_RADIUS_MM);
@@ -152,6 +167,7 @@ impl Friction {
             gel_from_body: *gel_from_body,
             force_n: before.force_n + along_n_per_mm * moved_mm,
             torque_n_mm: before.torque_n_mm + about_n_mm * turned_rad,
+            slipped_mm: DVec2::ZERO,
         };
         let limit_n = self.coefficient * normal_n;
         let share = held
@@ -159,6 +175,7 @@ impl Friction {
             .length()
             .hypot(held.torque_n_mm / (ARM_OF_RADIUS * radius_mm));
         if share > limit_n {
+            held.slipped_mm = held.force_n * (1.0 - limit_n / share) / along_n_per_mm;
             held.force_n *= limit_n / share;
             held.torque_n_mm *= limit_n / share;
         }
@@ -169,12 +186,20 @@ impl Friction {
         Some(held.force_n)
     }
 
-    /// Lets go of what touches: the next moment begins without friction.
+    /// Displacement of the body over the gel in the last frame, mm, along x and y of the gel: 0
+    /// while the body sticks, and without contact.
+    #[must_use]
+    pub fn slipped_mm(&self) -> [f64; 2] {
+        self.held.map_or([0.0; 2], |held| held.slipped_mm.to_array())
+    }
+
+    /// Ends the contact: the next frame begins without friction.
     pub fn release(&mut self) {
         self.held = None;
     }
 
-    /// How far the body's point at a place of the surface has moved along it, mm, and how far it has turned about the vertical, radians.
+    /// Displacement along the surface, mm, of the body's point at a location of the surface, and
+    /// rotation of the body about the vertical, radians.
     fn moved(&self, before: &Pose, now: &Pose, place_mm: DVec2) -> (DVec2, f64) {
         let place_mm = self.center_mm + place_mm.extend(0.0);
         let came_from_mm = before.inverse_transform_point(place_mm);
@@ -191,7 +216,8 @@ mod tests {
     use twintac_sensor::SensorFile;
     use twintac_shape::{Shape, Surfaces};
 
-    /// Force of friction, N, of one of PhysTac's indenters in the gel's middle after so many steps of 0.1 mm aside.
+    /// Friction force, N, of one of PhysTac's indenters in the gel's middle after `n_steps` steps
+    /// of 0.1 mm sideways.
     fn dragged(indenter: &str, depth_mm: f64, coefficient: f64, n_steps: u32) -> f64 {
         let sensor = SensorFile::phystac().unwrap().sensor;
         let shape = &sensor.indenter(indenter).unwrap().shape;
@@ -209,7 +235,8 @@ mod tests {
 
     #[test]
     fn what_sticks_shears_the_gel_nearly_as_the_finite_elements_do() {
-        // `twintac simulate --path` with `solver.friction = 2`, 0.4 mm aside. A ring is stiffer than the disc of its area.
+        // Expected: `twintac simulate --path` with `solver.friction = 2`, 0.4 mm sideways. A ring
+        // is stiffer than the disc of its area.
         for (indenter, depth_mm, solved_n) in [
             ("sphere-25", 1.0, 0.150),
             ("sphere-25", 2.0, 0.224),
@@ -230,7 +257,7 @@ mod tests {
 
     #[test]
     fn what_slips_is_held_by_coulombs_friction() {
-        // The same with `solver.friction = 0.5`, 2 mm aside.
+        // Expected: the same with `solver.friction = 0.5`, 2 mm sideways.
         for (indenter, solved_n) in [("sphere-25", 0.250), ("cylinder", 0.595)] {
             let found_n = dragged(indenter, 1.0, 0.5, 20);
             assert!(
@@ -303,8 +330,10 @@ mod tests {
 
     #[test]
     fn ports_feel_a_pull_nearly_as_under_the_finite_elements() {
-        // What `twintac simulate --path` with `solver.friction = 2` adds at the ports ahead of and behind the middle when the body is pulled aside by 0.8 mm, kPa, for the
-        // force that it finds, N. Farther ports feel a third to a half more than this: the gel's sides are free.
+        // Expected: what `twintac simulate --path` with `solver.friction = 2` adds at the ports
+        // ahead of and behind the middle when the body is moved sideways by 0.8 mm, kPa, for the
+        // force that it gives, N. At ports farther away the effect is larger than this by a third
+        // to a half, because the gel's sides are free.
         let sensor = SensorFile::phystac().unwrap().sensor;
         for (indenter, depth_mm, pull_n, solved_kpa, tolerance) in [
             ("sphere-25", 1.0, 0.291, [0.545, -0.595], 0.2),

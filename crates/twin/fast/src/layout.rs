@@ -1,4 +1,4 @@
-//! How what touches is laid out for the networks.
+//! How contact geometry is arranged as inputs of the networks.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -11,34 +11,37 @@ use crate::surface::SurfaceGrid;
 /// Height of PhysTac's gel, mm.
 const HEIGHT_MM: f64 = 8.5;
 
-/// The shortest edges under a shape on that gel, mm. The networks are told how much longer edges are, and read as if they were not.
+/// The shortest mesh edges under a shape on that gel, mm. A network input says by how much the
+/// edges of a training press are longer; the trained networks are evaluated as if they were not.
 const FINEST_MM: f64 = 0.6;
 
-/// The shortest edges over a gel's width, in proportion to which shapes are drawn: they bound those of a high gel, 0.75 mm of the fingertip's.
+/// The shortest mesh edges as a fraction of a gel's width, in proportion to which shapes are drawn.
+/// They limit the edges of a high gel: 0.75 mm for the fingertip's.
 const FINEST_OF_WIDTH: f64 = 0.03;
 
-/// Length of the shortest edges of the meshes that networks are taught with, mm, of a gel of some height and width, the root of its area in plan, mm.
+/// Length of the shortest edges of the meshes of training presses, mm. `height_mm`: height of the
+/// gel; `width_mm`: root of its area in plan.
 #[must_use]
 pub fn finest_edge_mm(height_mm: f64, width_mm: f64) -> f64 {
     (height_mm / HEIGHT_MM * FINEST_MM).min(FINEST_OF_WIDTH * width_mm)
 }
 
-/// How what touches is laid out for the networks.
+/// How contact geometry is arranged as inputs of the networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Layout {
-    /// Each port is above a point of one of them. The force is read from the first, which may have
-    /// no port.
+    /// Each port is below a point of one of them. Force and torque are computed from the first,
+    /// which may have no port.
     pub(crate) grids: Vec<SurfaceGrid>,
     pub(crate) patch: Patch,
     pub(crate) surroundings: Surroundings,
 }
 
 impl Layout {
-    /// The layout over a sensor's gel.
+    /// The layout for a sensor's gel.
     pub(crate) fn of(sensor: &Sensor) -> Self {
         let (mut grids, surroundings) = (SurfaceGrid::all(sensor), Surroundings::of(sensor));
-        // A press teaches the force of its mirror images too, if the grid that it is read from has
-        // them.
+        // Presses are also used mirrored to train the force, if the grid that it is computed from
+        // has mirror symmetry.
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let center_mm = 0.5 * (low + high).truncate();
         let central = SurfaceGrid::above(sensor, center_mm);
@@ -53,22 +56,22 @@ impl Layout {
         }
     }
 
-    /// Inputs of the network of forces.
+    /// Number of inputs of the network of force and torque.
     pub(crate) fn n_field_inputs(&self) -> usize {
         self.grid().len() * N_CHANNELS + 1
     }
 
-    /// Points of all grids.
+    /// Number of points of all grids.
     pub(crate) fn n_points(&self) -> usize {
         self.first_point(self.grids.len())
     }
 
-    /// Points of the grids before one.
+    /// Number of points of the grids before one.
     pub(crate) fn first_point(&self, grid: usize) -> usize {
         self.grids[..grid].iter().map(SurfaceGrid::len).sum()
     }
 
-    /// Number of a grid with a point above a place.
+    /// Number of a grid with a point above a location.
     pub(crate) fn grid_at(&self, at: DVec2) -> Option<usize> {
         self.grids.iter().position(|grid| grid.has(at))
     }
@@ -82,13 +85,13 @@ impl Layout {
         finest_edge_mm(self.surroundings.height_mm(), self.surroundings.width_mm())
     }
 
-    /// How much longer edges are than the shortest, mm on a gel as high as PhysTac's.
+    /// By how much edges are longer than the shortest, mm, scaled to a gel as high as PhysTac's.
     fn coarseness(&self, edge_mm: f32) -> f32 {
         let finest_mm = self.finest_edge_mm();
         (FINEST_MM * (f64::from(edge_mm) / finest_mm - 1.0)) as f32
     }
 
-    /// Appends the inputs of the network of pressures for a place on a grid.
+    /// Appends the inputs of the network of pressures for a location on a grid.
     pub(crate) fn put_patch(
         &self,
         field: &[f32],
@@ -110,7 +113,8 @@ impl Layout {
         inputs.push(self.coarseness(edge_mm));
     }
 
-    /// Appends the inputs of the network of forces, mirrored across x and across y.
+    /// Appends the inputs of the network of force and torque, mirrored across x and across y where
+    /// asked for.
     pub(crate) fn put_field(&self, field: &[f32], edge_mm: f32, mirrored: [bool; 2], inputs: &mut Vec<f32>) {
         let [n_x, n_y] = self.grid().n;
         for j in 0..n_y {
@@ -142,8 +146,8 @@ mod tests {
 
     #[test]
     fn forces_are_read_from_a_grid_with_the_gels_mirror_images() {
-        // Ports 5 mm apart are on four grids of points 2 mm apart, none of which is its own mirror
-        // image.
+        // Ports 5 mm apart are on four grids of points 2 mm apart. None of these grids is its own
+        // mirror image.
         let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
         let n_before = Layout::of(&sensor).grids.len();
         assert_eq!(

@@ -1,4 +1,4 @@
-//! What the fast twin learns from: presses of a gel that was solved.
+//! Training presses: FEM solutions of presses of a gel, from which the surrogate learns.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -7,32 +7,35 @@ use twintac_shape::{Pose, Shape};
 
 use crate::surface::SurfaceGrid;
 
-/// One press of a solved gel.
+/// One training press: an FEM solution of a press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lesson {
-    /// What pressed.
+    /// The indenter's shape.
     pub shape: Shape,
-    /// Length of the mesh's edges under it, mm. Coarse meshes read too little: the network is told how coarse.
+    /// Length of the mesh's edges under the shape, mm. Coarse meshes give too low pressures, so
+    /// this length is an input of the network.
     pub edge_mm: f64,
-    /// The gel at increasing depths, evenly from first touch on.
+    /// The gel at increasing depths, in equal steps from first touch on.
     pub frames: Vec<LessonFrame>,
 }
 
-/// A moment of a press.
+/// One frame of a press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LessonFrame {
-    /// Where the shape was.
+    /// Pose of the shape in the gel's frame.
     pub gel_from_indenter: Pose,
     /// Force on the gel, N.
     pub force_n: DVec3,
     /// Torque on the gel about the origin of its frame, N mm.
     pub torque_n_mm: DVec3,
-    /// Hydrostatic pressure over a disc as large as a port at each of the lesson plan's places, kPa. `[n_places]`
+    /// Hydrostatic pressure at each location of [`lesson_places_mm`], averaged over a disc as large
+    /// as a port, kPa. `[n_places]`
     pub floor_kpa: Vec<f32>,
 }
 
 impl Lesson {
-    /// The shape's pose at first touch: frames follow each other straight down at even distances. `None` for a lesson of fewer than two.
+    /// The shape's pose at first touch, extrapolated: frames follow each other straight down in
+    /// equal steps. `None` for a press of fewer than two frames.
     pub(crate) fn touch(&self) -> Option<Pose> {
         let [first, second, ..] = &self.frames[..] else {
             return None;
@@ -45,8 +48,9 @@ impl Lesson {
     }
 }
 
-/// Where lessons read the floor of a sensor's gel, in its plane, mm: at each taxel, then all over if nothing is cast into the gel: what a port feels
-/// on top of a chip it would not feel elsewhere.
+/// Locations of the gel's base at which training presses evaluate the pressure, in the gel's plane,
+/// mm: the taxels first, then a grid over the whole base if nothing is cast into the gel. With
+/// chips in the gel, the pressure on top of a chip differs from that elsewhere.
 #[must_use]
 pub fn lesson_places_mm(sensor: &Sensor) -> Vec<DVec2> {
     let taxels = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
@@ -54,7 +58,8 @@ pub fn lesson_places_mm(sensor: &Sensor) -> Vec<DVec2> {
     if sensor.inclusions.is_empty() {
         let grids = SurfaceGrid::all(sensor);
         if sensor.has_port_at_side() {
-            // What a port feels over the gel's side is felt nowhere else: the more places there, the better.
+            // The response of a port at the gel's side occurs nowhere else, so all grids are used:
+            // the more locations there, the better.
             let places = grids.iter().flat_map(|grid| grid.floor(sensor, 0.0));
             places_mm.extend(places);
         } else {

@@ -1,4 +1,4 @@
-//! What a trained fast twin is made of.
+//! The parts of a trained surrogate.
 
 use std::sync::Arc;
 
@@ -14,34 +14,36 @@ use crate::novelty::Novelty;
 use crate::taught::{FastGelMismatch, Port, TaughtGel};
 use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
-/// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
+/// A surrogate of one sensor's gel: neural networks from the bodies that touch it to the pressure
+/// at each port and the force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FastGel {
     pub(crate) sensor: String,
-    /// The gel that it was taught, which its readers share.
+    /// The gel of the training presses; shared with readers.
     pub(crate) gel: Arc<TaughtGel>,
-    /// The ports that it was taught, those of the sensor. `[n_taxels]`
+    /// The ports of the sensor that it was trained for. `[n_taxels]`
     pub(crate) ports: Vec<Port>,
     pub(crate) layout: Layout,
-    /// Where it is read, mm: at those ports, unless [`Self::with_ports`] has moved them.
-    /// `[n_taxels]`
+    /// Locations at which it is evaluated, mm: those ports, unless [`Self::with_ports`] has moved
+    /// them. `[n_taxels]`
     pub(crate) ports_mm: Vec<DVec2>,
-    /// About which torques count, mm.
+    /// Reference point of torques, mm.
     pub(crate) center_mm: DVec3,
     pub(crate) networks: Networks,
     pub(crate) novelty: Novelty,
 }
 
 impl FastGel {
-    /// Learns from presses of a sensor's gel, and from others, which are held out, how far off it
-    /// then is where few lessons pressed: its novelty tells. With none held out nobody knows, and
-    /// places count as sure where any lesson pressed.
+    /// Trains a surrogate on presses of a sensor's gel. Held-out presses then show how large its
+    /// errors are where few training presses pressed, which enters the OOD score
+    /// ([`FastReader::novelty`](crate::FastReader::novelty)). Without held-out presses this error
+    /// is unknown, and each location where a training press pressed counts as in-distribution.
     ///
     /// # Errors
-    /// A lesson whose shape can't be.
+    /// A press whose shape cannot exist.
     ///
     /// # Panics
-    /// No lesson with a frame.
+    /// If no press has a frame.
     pub fn train(
         sensor: &Sensor,
         (lessons, held_out): (&[Lesson], &[Lesson]),
@@ -55,7 +57,7 @@ impl FastGel {
         let places_mm = lesson_places_mm(sensor);
         let places = (&places_mm[..], sensor.taxels.len());
         let frames = Frames::of(lessons, &layout, places, center_mm, &sensor.surfaces)?;
-        // A surface of triangles may have the heights of its mirror image, and other sides.
+        // A gel that is a surface of triangles may have a symmetric top and different sides.
         let has_known_sides = !matches!(sensor.gel.solid, Solid::Stl { .. });
         let is_symmetric = layout.grid().is_symmetric(center_mm.truncate());
         let is_symmetric = is_symmetric.map(|is| is && has_known_sides);
@@ -70,7 +72,8 @@ impl FastGel {
             layout: &layout,
             settings,
             is_symmetric,
-            // What a port feels over the gel's side is felt in few other places: patches do not tell it.
+            // The response of a port over the gel's side occurs at few other locations: a network
+            // of patches does not learn it.
             mirrored_taxels: sensor.has_port_at_side().then(|| [0, 1].map(mirrored)),
             seed,
         };
@@ -97,20 +100,20 @@ impl FastGel {
         &self.sensor
     }
 
-    /// Whether it is the fast gel of a sensor: whether it was taught the sensor's gel (shape,
-    /// material, shell, and what is cast into it) and is read at the sensor's ports. Names do not
-    /// count, nor do indenters, limits, the read-out, relaxation and friction, which a fast gel
-    /// does not know.
+    /// Checks that this is the surrogate of a sensor: that it was trained on the sensor's gel
+    /// (shape, material, shell, and what is cast into it) and is evaluated at the sensor's ports.
+    /// Names do not count. Indenters, limits, the read-out, relaxation and friction do not count
+    /// either, because a surrogate does not depend on them.
     ///
     /// # Errors
-    /// All that differs, in words.
+    /// All differences, in words.
     pub fn check(&self, sensor: &Sensor) -> Result<(), FastGelMismatch> {
         let mut differences = self.gel.differences(&TaughtGel::of(sensor));
         differences.extend(Port::difference(&self.read_ports(), &Port::all(sensor)));
         FastGelMismatch::of((&self.sensor, &sensor.name), differences)
     }
 
-    /// The ports at which it is read.
+    /// The ports at which it is evaluated.
     fn read_ports(&self) -> Vec<Port> {
         match &self.ports[..] {
             ports if Port::places_mm(ports) == self.ports_mm => ports.to_vec(),
@@ -119,15 +122,16 @@ impl FastGel {
         }
     }
 
-    /// Where it is read in the gel's plane, mm: at the ports, in their order. `[n_taxels]`
+    /// Locations of the ports in the gel's plane, mm, in their order. `[n_taxels]`
     #[must_use]
     pub fn ports_mm(&self) -> &[DVec2] {
         &self.ports_mm
     }
 
-    /// The same gel with its ports at other places of the floor, mm, instead of the taxels': a reading is the pressure over a disc as large as a
-    /// port there. Ports on a regular grid share what they need: thousands take a few MB. Where taxels reach over the gel's side, pressures at other places are
-    /// less exact than the taxels' own.
+    /// The same surrogate with its ports at other locations of the gel's base, mm, instead of the
+    /// taxels': each pressure is averaged over a disc as large as a port. Ports on a regular grid
+    /// share memory: thousands of them take a few MB. Where taxels reach over the gel's side,
+    /// pressures at other locations are less exact than those of the taxels.
     #[must_use]
     pub fn with_ports(&self, places_mm: &[DVec2]) -> Self {
         let mut gel = self.clone();
@@ -136,21 +140,23 @@ impl FastGel {
         gel
     }
 
-    /// Corners of the gel in plan, mm.
+    /// Corners of the gel in plan, mm: the lowest and the highest.
     #[must_use]
     pub fn bounds_mm(&self) -> [DVec2; 2] {
         let low_mm = self.layout.surroundings.low_mm();
         [low_mm, 2.0 * self.center_mm.truncate() - low_mm]
     }
 
-    /// Height of the undeformed gel above the board, mm, linear between points 2 mm apart.
+    /// Height of the undeformed gel above the board, mm, interpolated linearly between points that
+    /// are 2 mm apart, or a tenth of the gel's height where that is more.
     #[must_use]
     pub fn height_mm_at(&self, place_mm: DVec2) -> f64 {
         self.layout.grid().height_mm_at(place_mm)
     }
 }
 
-/// For each place, the number of its mirror image about a center across an axis; `None` if one of them has none.
+/// For each location, the number of its mirror image about a center across an axis; `None` if a
+/// location has none.
 fn mirror_images(places_mm: &[DVec2], center_mm: DVec2, axis: usize) -> Option<Vec<usize>> {
     let image = |at: &DVec2| {
         let mut image_mm = *at;

@@ -1,4 +1,4 @@
-//! A fast gel in use.
+//! Evaluation of a surrogate.
 
 use std::sync::Arc;
 
@@ -13,15 +13,15 @@ use crate::surface::SurfaceGrid;
 use crate::taught::TaughtGel;
 use crate::{Body, FastGel, Touch};
 
-/// A fast gel, ready to be read: it owns all memory that a reading needs.
+/// A surrogate ready for evaluation: it owns all memory that an evaluation needs.
 #[derive(Clone, Debug)]
 pub struct FastReader {
-    /// The sensor and the gel that were taught.
+    /// The sensor and the gel that it was trained for.
     sensor: Arc<str>,
     gel: Arc<TaughtGel>,
     points: Arc<ContactPoints>,
     engine: Arc<Engine>,
-    /// What touches sensors that are evaluated together.
+    /// Network inputs of the sensors that are evaluated together.
     inputs: Vec<f32>,
     scratch: Scratch,
     ports_mm: Arc<[DVec2]>,
@@ -30,7 +30,7 @@ pub struct FastReader {
 }
 
 impl FastGel {
-    /// Lays the networks out for reading.
+    /// Lays the networks out for evaluation.
     #[must_use]
     pub fn reader(&self) -> FastReader {
         let points = ContactPoints::new(&self.layout.grids);
@@ -62,18 +62,19 @@ impl FastReader {
         self.ports_mm.len()
     }
 
-    /// Name of the sensor, and the gel, that were taught.
+    /// Name of the sensor, and the gel, that it was trained for.
     pub(crate) fn taught(&self) -> (&str, &Arc<TaughtGel>) {
         (&self.sensor, &self.gel)
     }
 
-    /// What the gel does under bodies at these poses in the gel's frame.
+    /// Pressures and wrench of a sensor under bodies at these poses in the gel's frame.
     ///
-    /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_taxels]`
-    /// - `wrench`: is written; force on the gel, N, and torque about the top of the gel's middle, N mm.
+    /// - `pressure_kpa`: output; hydrostatic pressure at each port, kPa. `[n_taxels]`
+    /// - `wrench`: output; force on the gel, N, and torque about the top of the gel's middle, N mm.
     ///
     /// # Panics
-    /// A slice of pressures of another length than there are taxels, a pose that is not finite.
+    /// If the slice of pressures has another length than there are taxels, or if a pose is not
+    /// finite.
     pub fn read(&mut self, bodies: &[(&Body, Pose)], pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
         assert_eq!(pressure_kpa.len(), self.n_taxels(), "a pressure for each taxel");
         let inputs = &mut self.inputs[..self.points.n_inputs()];
@@ -83,16 +84,19 @@ impl FastReader {
         quieten(self.points.touched(inputs), pressure_kpa, wrench);
     }
 
-    /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where
-    /// readings and force may be wrong. That is where it is farther from all that was taught than
-    /// 99 of 100 contacts of the same kinds, by how deep, steep, large, tilted and uneven it is;
-    /// where it is deeper than lessons pressed; where so few lessons pressed that more than one
-    /// of ten readings would be off by more than a tenth, as presses have shown that were not
-    /// taught; and where more than a twentieth of what presses is narrower than 1.25 distances of
-    /// the grid's points (2.5 mm on PhysTac), as blades, pins and thin walls are.
+    /// Out-of-distribution (OOD) score of a contact: 0 where nothing is near the gel, above 1 where
+    /// pressures and force may be wrong. It is above 1
+    ///
+    /// - where the distance to the nearest training contact, by how deep, steep, large, tilted and
+    ///   uneven a contact is, is larger than for 99 of 100 contacts of the same kinds;
+    /// - where the contact is deeper than the training presses;
+    /// - where so few training presses pressed that more than one of ten predictions would have an
+    ///   error of more than a tenth, as held-out presses have shown;
+    /// - where more than a twentieth of what presses is narrower than 1.25 grid spacings (2.5 mm on
+    ///   PhysTac), as blades, pins and thin walls are.
     ///
     /// # Panics
-    /// A pose that is not finite.
+    /// If a pose is not finite.
     pub fn novelty(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
@@ -102,14 +106,15 @@ impl FastReader {
         narrow.fold(self.novelty.score(&self.grid, inputs), f32::max)
     }
 
-    /// What touches the points of all grids. `[n_points * N_CHANNELS]`
+    /// Network inputs of the points of all grids. `[n_points * N_CHANNELS]`
     pub(crate) fn inputs(&mut self, bodies: &[(&Body, Pose)]) -> &[f32] {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
         inputs
     }
 
-    /// Where bodies are carried, and where the ports are, mm; `None` where nothing touches.
+    /// The area that carries the bodies, and the locations of the ports, mm; `None` where nothing
+    /// touches.
     pub(crate) fn footprint(&mut self, bodies: &[(&Body, Pose)]) -> Option<(Footprint<'_>, &[DVec2])> {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
@@ -117,16 +122,20 @@ impl FastReader {
         Some((footprint, &self.ports_mm))
     }
 
-    /// [`Self::read`] of many sensors, one after the other on the calling thread. A sensor's numbers do not depend on the others.
+    /// [`Self::read`] of many sensors, one after the other on the calling thread. The numbers of a
+    /// sensor do not depend on the others.
     ///
-    /// - `bodies`: everything that touches; any number of sensors may share a body.
-    /// - `touches`: of the first sensor, then of the second, and so on.
-    /// - `ends`: where each sensor's touches end. `[n_sensors]`, the last is the number of touches.
-    /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_sensors * n_taxels]`
-    /// - `wrench`: is written; force, N, and torque about the top of the gel's middle, N mm. `[n_sensors]`
+    /// - `bodies`: all rigid bodies; any number of sensors may share a body.
+    /// - `touches`: those of the first sensor, then those of the second, and so on.
+    /// - `ends`: where the touches of each sensor end. `[n_sensors]`, the last is the number of
+    ///   touches.
+    /// - `pressure_kpa`: output; hydrostatic pressure at each port, kPa. `[n_sensors * n_taxels]`
+    /// - `wrench`: output; force on each gel, N, and torque about the top of the gel's middle, N
+    ///   mm. `[n_sensors]`
     ///
     /// # Panics
-    /// Slices of other lengths, ends that decrease, a body that is not there, a pose that is not finite.
+    /// If a slice has another length, if ends decrease, if a touch names a body that does not
+    /// exist, or if a pose is not finite.
     pub fn read_many(
         &mut self,
         bodies: &[Body],
@@ -138,7 +147,7 @@ impl FastReader {
         self.read_from(bodies, touches, 0, ends, pressure_kpa, wrench);
     }
 
-    /// The same of sensors whose first touch is not the first of all.
+    /// The same for sensors whose first touch has the number `first`.
     pub(crate) fn read_from(
         &mut self,
         bodies: &[Body],
@@ -178,7 +187,8 @@ impl FastReader {
     }
 }
 
-/// Leaves what is read only as far as something touches: networks are never quite silent.
+/// Scales pressures and wrench by the degree of contact: outputs of the networks are never exactly
+/// zero.
 fn quieten(touched: f32, pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
     if touched < 1.0 {
         for number in pressure_kpa.iter_mut().chain(wrench) {

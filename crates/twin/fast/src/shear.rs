@@ -1,4 +1,4 @@
-//! What a pull along the gel's surface does to the pressure on its floor.
+//! Effect of a force along the gel's surface on the pressure at its base.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -7,30 +7,34 @@ use glam::DVec2;
 
 use crate::footprint::Footprint;
 
-/// Distance of the table's entries, of the layer's height.
+/// Spacing of the table's entries, as a fraction of the layer's height.
 const STEP: f64 = 0.02;
 
-/// Where the table ends, in heights: further away next to nothing is felt.
+/// End of the table, in layer heights: the effect farther away is negligible.
 const FURTHEST: f64 = 5.0;
 
-/// Steps and end of the waves that are summed, in radians over the layer's height.
+/// Step and end of the wave numbers that are summed, radians per layer height.
 const WAVE_STEP: f64 = 0.05;
 const SHORTEST_WAVE: f64 = 25.0;
 
-/// Pressure on the rigid floor of an elastic layer that is bonded to it and pulled along its surface at a point: `F κ(r/h)/h² cos θ`, for a force `F` and a place
-/// of the floor at the distance `r` in a direction `θ` from that of the force. It is higher ahead, and lower behind.
+/// Pressure at the rigid base of an elastic layer that is bonded to it and pulled along its surface
+/// at a point: `F κ(r/h)/h² cos θ`, for a force `F` and a location of the base at the distance `r`
+/// in a direction `θ` from that of the force. The pressure is higher ahead of the force and lower
+/// behind it.
 ///
-/// The layer's equations are solved for waves `exp(ikx)` by Papkovich-Neuber potentials `φ + zψ`, with nothing moving at `z = 0`, and the traction `q` along x at `z = h`: with `H = kh`,
-/// `p = -i q ⅔(1 + ν) ((1 - 2ν) sinh H + H cosh H) / (4(1 - ν)² cosh² H + H² - (1 - 2ν)² sinh² H)`. Waves across the pull give no pressure. What a point does is the
-/// sum of all waves (a Hankel transform of the first order).
+/// The layer's equations are solved for waves `exp(ikx)` by Papkovich-Neuber potentials `φ + zψ`,
+/// with zero displacement at `z = 0`, and the traction `q` along x at `z = h`: with `H = kh`,
+/// `p = -i q ⅔(1 + ν) ((1 - 2ν) sinh H + H cosh H) / (4(1 - ν)² cosh² H + H² - (1 - 2ν)² sinh² H)`.
+/// Waves across the pull give no pressure. The effect of a point force is the sum of all waves (a
+/// Hankel transform of the first order).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shear {
-    /// `κ` at even distances, from 0 on.
+    /// `κ` at equal distances, from 0 on.
     kernel: Arc<[f64]>,
 }
 
 impl Shear {
-    /// The pressure in a layer of a Poisson's ratio.
+    /// The pressure in a layer with this Poisson's ratio.
     pub(crate) fn of(poissons_ratio: f64) -> Self {
         let n_waves = (SHORTEST_WAVE / WAVE_STEP) as u32;
         let waves: Vec<(f64, f64)> = (1..=n_waves)
@@ -54,7 +58,8 @@ impl Shear {
         }
     }
 
-    /// Adds what a force along the surface does at the ports when it is shared by all places that carry a body.
+    /// Adds the effect of a force along the surface, N, to the pressure at the ports, kPa. The
+    /// force is distributed over the locations that carry a body.
     pub(crate) fn add(
         &self,
         footprint: &Footprint,
@@ -77,7 +82,7 @@ impl Shear {
         }
     }
 
-    /// `κ` at a distance in heights.
+    /// `κ` at a distance in layer heights.
     fn at(&self, distance: f64) -> f64 {
         let entries = distance / STEP;
         let entry = entries as usize;
@@ -88,7 +93,7 @@ impl Shear {
     }
 }
 
-/// Pressure on the floor for a wave of traction of height 1, a quarter of a wave behind it.
+/// Pressure at the base for a wave of traction of height 1, a quarter of a wavelength behind it.
 fn floor_pressure(wave: f64, poissons_ratio: f64) -> f64 {
     let (sinh, cosh) = (wave.sinh(), wave.cosh());
     let compressible = 1.0 - 2.0 * poissons_ratio;
@@ -102,7 +107,8 @@ mod tests {
 
     #[test]
     fn long_waves_press_in_proportion_to_their_number() {
-        // The limit of the formula by hand: a slip of the pen in its hyperbolic terms would not have it. Solved gels judge the rest (`friction`).
+        // The limit of the formula was derived by hand: an error in its hyperbolic terms would not
+        // have this limit. Comparisons with FEM solutions test the rest (`friction`).
         let (wave, poissons_ratio) = (1e-3, 0.4);
         let expected = (1.0 + poissons_ratio) / (3.0 * (1.0 - poissons_ratio)) * wave;
         assert!((floor_pressure(wave, poissons_ratio) / expected - 1.0).abs() < 1e-3);

@@ -1,8 +1,8 @@
-//! Vectors of a few numbers, as long as the processor has them.
+//! Vectors of a few numbers, as long as the processor supports.
 
 use pulp::{Simd, WithSimd};
 
-/// Numbers in a vector of this processor. Rows are filled up with zeros to whole vectors.
+/// Numbers in a vector of this processor. Rows are padded with zeros to whole vectors.
 pub(crate) fn lanes() -> usize {
     dispatch(Lanes)
 }
@@ -18,7 +18,8 @@ impl WithSimd for Lanes {
     }
 }
 
-/// Runs what is compiled for each instruction set, with the best one that there is. All give the same bits.
+/// Runs code that is compiled for each instruction set, with the best one available. All give the
+/// same bits.
 pub(crate) fn dispatch<W: WithSimd>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     return match pulp::x86::V3::try_new() {
@@ -29,7 +30,7 @@ pub(crate) fn dispatch<W: WithSimd>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
 
-/// Numbers as vectors, of which they are a whole number.
+/// Numbers as vectors; their number is a multiple of a vector's length.
 #[inline(always)]
 pub(crate) fn vectors<S: Simd>(numbers: &[f32]) -> &[S::f32s] {
     debug_assert!(numbers.len().is_multiple_of(S::F32_LANES));

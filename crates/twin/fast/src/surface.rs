@@ -1,30 +1,32 @@
-//! Where the distance to what touches is sampled: a grid over the gel's surface.
+//! Grids over the gel's surface, at whose points the distance to bodies is sampled.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use twintac_sensor::Sensor;
 
-/// Distance of the grid's points along x and along y, mm; more over a gel that is higher than ten of them, whose floor feels nothing so small.
+/// Spacing of the grid's points along x and along y, mm. It is larger over a gel higher than ten of
+/// these: the base of such a gel does not respond to such small details.
 const SPACING_MM: f64 = 2.0;
 
-/// The largest distance of the points, of the gel's height.
+/// Smallest spacing of the points as a fraction of the gel's height.
 const SPACING_OF_HEIGHT: f64 = 1.0 / 10.0;
 
 /// A grid of points on the undeformed gel's surface, row by row along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SurfaceGrid {
-    /// Place of the first point in the gel's plane, mm.
+    /// Position of the first point in the gel's plane, mm.
     pub(crate) first_mm: [f64; 2],
-    /// Distance of the points, mm.
+    /// Spacing of the points, mm.
     pub(crate) spacing_mm: f64,
-    /// Points along x and along y.
+    /// Numbers of points along x and along y.
     pub(crate) n: [usize; 2],
-    /// Height of the surface at each point, mm; beside the gel that of its nearest point.
+    /// Height of the surface at each point, mm; beside the gel, that of its highest point.
     pub(crate) height_mm: Vec<f64>,
 }
 
 impl SurfaceGrid {
-    /// Grids over a sensor's gel, of which each taxel has one with a point above it. The first is that of the first taxel.
+    /// Grids over a sensor's gel such that each taxel has a grid with a point above it. The first
+    /// grid is that of the first taxel.
     pub(crate) fn all(sensor: &Sensor) -> Vec<Self> {
         let mut grids: Vec<Self> = Vec::new();
         for taxel in &sensor.taxels {
@@ -36,7 +38,7 @@ impl SurfaceGrid {
         grids
     }
 
-    /// A grid with a point above a place.
+    /// A grid with a point above a location.
     pub(crate) fn above(sensor: &Sensor, anchor: DVec2) -> Self {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let spacing_mm = SPACING_MM.max(SPACING_OF_HEIGHT * (high.z - low.z));
@@ -57,8 +59,8 @@ impl SurfaceGrid {
         grid
     }
 
-    /// Whether it and the heights of its points are their own mirror images, across x and across y,
-    /// about a place.
+    /// Whether the grid and the heights of its points are their own mirror images about a location,
+    /// across x and across y.
     pub(crate) fn is_symmetric(&self, center_mm: DVec2) -> [bool; 2] {
         let [n_x, n_y] = self.n;
         [0, 1].map(|axis| {
@@ -79,13 +81,14 @@ impl SurfaceGrid {
         })
     }
 
-    /// The points' places in the gel's plane, mm.
+    /// The points' positions in the gel's plane, mm.
     pub(crate) fn places(&self) -> impl Iterator<Item = DVec2> + '_ {
         let [n_x, n_y] = self.n;
         (0..n_y).flat_map(move |j| (0..n_x).map(move |i| self.place(i, j)))
     }
 
-    /// Places on the gel's floor at which a disc of this radius is on the gel, mm.
+    /// Positions of points such that a disc of this radius, at that position on the gel's base, is
+    /// within the gel, mm.
     pub(crate) fn floor(&self, sensor: &Sensor, radius_mm: f64) -> Vec<DVec2> {
         let (low, _) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let is_gel = |at: DVec2| {
@@ -105,7 +108,7 @@ impl SurfaceGrid {
         DVec2::from(self.first_mm) + self.spacing_mm * DVec2::new(i as f64, j as f64)
     }
 
-    /// Whether one of its points, or one that would follow them, is above a place.
+    /// Whether a point of the grid, or of the grid continued outward, is above a location.
     pub(crate) fn has(&self, at: DVec2) -> bool {
         self.cell(at).1.length() < 1e-6
     }
@@ -117,15 +120,16 @@ impl SurfaceGrid {
         is_there.then(|| j as usize * n_x + i as usize)
     }
 
-    /// Column and row of a place, and how far behind them it lies in shares of the spacing.
+    /// Column and row of a location, and its offset from them as a fraction of the spacing.
     pub(crate) fn cell(&self, at: DVec2) -> ([i32; 2], DVec2) {
-        // Places on the grid stay there in spite of rounding.
+        // Locations on the grid stay on it in spite of rounding.
         let cells = (at - DVec2::from(self.first_mm)) / self.spacing_mm + 1e-9;
         let cell = cells.floor();
         ([cell.x as i32, cell.y as i32], cells - cell)
     }
 
-    /// Height of the gel at a place, linear between points; beside the grid that of its border, mm.
+    /// Height of the gel at a location, mm, interpolated linearly between points; beside the grid,
+    /// that of its border.
     pub(crate) fn height_mm_at(&self, at: DVec2) -> f64 {
         let ([i, j], part) = self.cell(at);
         let height_mm = |i: i32, j: i32| {

@@ -1,4 +1,4 @@
-//! Which sensors a fast gel is put together with.
+//! Which sensors a surrogate may be used with.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -12,7 +12,7 @@ fn phystac() -> Sensor {
     (*SensorFile::phystac().unwrap().sensor).clone()
 }
 
-/// What the built-in fast gel says of PhysTac with a change.
+/// The message of the built-in surrogate about PhysTac with a change; `None` without a difference.
 fn said_of(change: impl FnOnce(&mut Sensor)) -> Option<String> {
     let mut sensor = phystac();
     change(&mut sensor);
@@ -131,6 +131,6 @@ fn friction_is_on_one_gel() {
         (&mismatch.of[..], &mismatch.sensor[..]),
         ("phystac-tip", "phystac")
     );
-    // Wherever it is read.
+    // The ports do not matter.
     assert_eq!(friction.check(&gel.with_ports(&[DVec2::ZERO]).reader()), Ok(()));
 }

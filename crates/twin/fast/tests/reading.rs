@@ -1,4 +1,5 @@
-//! A fast gel that learned a few invented lessons: what readings have to obey whatever was learned.
+//! Properties of predictions that hold for any trained surrogate, tested on one that is trained on
+//! a few invented presses.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -7,7 +8,8 @@ use twintac_fast::{Body, FastGel, Lesson, LessonFrame, Touch, TrainSettings, les
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::{Pose, Shape, Surfaces};
 
-/// Lessons of a gel whose floor reads how deep a ball is, the less the further away.
+/// Presses in which the pressure at the base is proportional to the depth of a ball and decreases
+/// with the distance from it.
 fn lessons(sensor: &Sensor) -> Vec<Lesson> {
     let places = lesson_places_mm(sensor);
     let top_mm = sensor.gel.solid.bounds_mm(&sensor.surfaces).1.z;
@@ -98,12 +100,12 @@ fn taxels_that_reach_over_the_gels_side_are_read_together() {
     let own = read(&gel, &there);
     assert_eq!(read(&again, &there), own);
 
-    // Other places are read by the network of all places, the force as before.
+    // Other locations use the network of all locations; the force stays the same.
     let (as_places_kpa, wrench) = read(&gel.with_ports(gel.ports_mm()), &there);
     assert_ne!(as_places_kpa, own.0);
     assert_eq!(wrench, own.1);
 
-    // A sensor of many reads what it reads alone.
+    // One of many sensors gives the same numbers as the sensor alone.
     let bodies = [ball.clone()];
     let touch = |sensor: u32| Touch {
         body: 0,
@@ -142,7 +144,7 @@ fn bytes_that_are_no_fast_gel_are_an_error() {
     let bytes = gel.to_bytes().unwrap();
     for broken in [&bytes[..0], &bytes[..100], &bytes[..bytes.len() - 4]] {
         let error = FastGel::from_bytes(broken).unwrap_err().to_string();
-        assert!(error.contains("not a fast twin"), "{error}");
+        assert!(error.contains("not a readable surrogate"), "{error}");
     }
 }
 
@@ -188,7 +190,7 @@ fn a_sensor_of_a_batch_reads_what_it_reads_alone() {
             6.5,
         )),
     };
-    // The third of each five sensors is touched by nothing, the others by one or two bodies.
+    // The third of every five sensors is touched by nothing, the others by one or two bodies.
     let of_sensor = |sensor: usize| if sensor % 5 == 2 { 0 } else { 1 + sensor % 2 };
     let ends: Vec<usize> = (0..101)
         .scan(0, |end, sensor| {
@@ -235,7 +237,8 @@ fn ports_may_be_anywhere_on_the_floor() {
     };
     let taxels = [-12.0, -4.0, 4.0, 12.0].map(|x| DVec2::new(x, -4.0));
     assert_eq!(pressures(&taxels), read(&gel, &there).0[..4]);
-    // Places equally far behind their points share rows: each reads what it reads alone.
+    // Locations with the same offset from their points share rows: each gives the same number as
+    // alone.
     let rows = (-10..10).flat_map(|j| (-20..20).map(move |i| 0.5 * DVec2::new(f64::from(i), f64::from(j))));
     let places: Vec<DVec2> = rows.collect();
     let together = pressures(&places);
@@ -263,12 +266,12 @@ fn a_contact_unlike_what_was_taught_is_new() {
     let mut reader = gel.reader();
     let thin = Body::new(&Shape::Sphere { radius_mm: 1.0 }, &Surfaces::new()).unwrap();
     let at = |z_mm: f64| Pose::from_position(DVec3::new(0.0, 0.0, z_mm));
-    // A lesson presses a ball 1, 2 and 3 mm deep there.
+    // A training press presses a ball 1, 2 and 3 mm deep there.
     assert!(reader.novelty(&[(&ball(), at(7.5))]) < 1.0);
     assert!(reader.novelty(&[(&thin, at(7.5))]) > 1.0);
     assert!(reader.novelty(&[(&ball(), at(3.5))]) > 1.0);
     assert_eq!(reader.novelty(&[(&ball(), at(12.0))]), 0.0);
-    // Between the points of the grid, none of which is inside it.
+    // Between the points of the grid, none of which is inside the ball.
     let between = Pose::from_position(DVec3::new(1.0, 1.0, 8.0));
     assert!(reader.novelty(&[(&thin, between)]) > 1.0);
 }
@@ -299,7 +302,8 @@ fn the_built_in_fingertip_carries_a_ball_about_as_a_half_space_does() {
             .all(|(shallow, deep)| shallow < deep),
         "{shallow_kpa:?} {deep_kpa:?}"
     );
-    // A ball of this size on a half-space with these constants (Hertz, 1882): 4/3 E / (1 - nu^2) sqrt(R d^3).
+    // A ball of this size on a half-space with these constants (Hertz, 1882): 4/3 E / (1 - nu^2)
+    // sqrt(R d^3).
     let hertz_n = 4.0 / 3.0 * 45.4e-3 / (1.0 - 0.495_f32.powi(2)) * (6.0_f32 * 1.5_f32.powi(3)).sqrt();
     assert!(
         (0.6..1.4).contains(&(shallow_n / hertz_n)),
@@ -307,7 +311,7 @@ fn the_built_in_fingertip_carries_a_ball_about_as_a_half_space_does() {
     );
 }
 
-/// A gel that is taught where this says so alone, and the novelty of a ball there.
+/// The OOD score of a ball, from a surrogate that is trained on the presses at some locations only.
 fn novelty_of_a_ball(
     is_taught: impl Fn(&DVec3) -> bool,
     (n_steps, n_held_out): (usize, usize),
@@ -333,10 +337,10 @@ fn a_place_that_was_not_taught_is_new() {
     assert!(in_the_middle(middle) < 1.0 && in_the_middle(edge) > 1.0);
     let mut at_the_edge = novelty_of_a_ball(|at| at.x.abs() > 7.0, (3, 0));
     assert!(at_the_edge(middle) > 1.0 && at_the_edge(edge) < 1.0);
-    // A gel that is its own mirror image teaches its other side.
+    // A gel that is its own mirror image is also trained on the other side.
     let mut on_the_left = novelty_of_a_ball(|at| at.x < -7.0, (3, 0));
     assert!(on_the_left(middle) > 1.0 && on_the_left(edge) < 1.0);
-    // Above a place, nothing is wrong.
+    // A ball above an untrained location has no contact.
     assert_eq!(on_the_left(DVec3::new(0.0, 0.0, 10.6)), 0.0);
 }
 
@@ -387,5 +391,5 @@ fn numbers_that_are_none_are_not_read() {
     let at = bytes.len() - 4;
     bytes[at..].copy_from_slice(&f32::NAN.to_le_bytes());
     let error = FastGel::from_bytes(&bytes).unwrap_err().to_string();
-    assert!(error.contains("numbers that are none"), "{error}");
+    assert!(error.contains("numbers that are not finite"), "{error}");
 }

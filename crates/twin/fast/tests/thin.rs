@@ -1,4 +1,5 @@
-//! What is thin, or has gone into the gel with its top, presses as what goes on above; what is too narrow for the grid is said to be new.
+//! Thin bodies, and bodies whose top is below the gel's surface, press like bodies that continue
+//! upward; bodies too narrow for the grid have an OOD score above 1.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -15,7 +16,7 @@ const TOP_MM: f64 = 8.5;
 const PLACES_MM: [[f64; 2]; 2] = [[0.0, 0.0], [0.7, 0.4]];
 const THIN_MM: [f64; 4] = [0.3, 0.5, 1.0, 3.0];
 const DEPTHS_MM: [f64; 8] = [0.2, 0.5, 0.8, 1.1, 1.5, 2.0, 2.5, 3.0];
-/// Height of what never goes in with its top, mm.
+/// Height of bodies whose top never goes below the surface, mm.
 const TALL_MM: f64 = 14.0;
 
 fn body(shape: &Shape) -> Body {
@@ -46,7 +47,7 @@ fn ring(wall_mm: f64, height_mm: f64) -> Shape {
     }
 }
 
-/// The same shape, known by samples.
+/// The same shape, known by samples instead of a formula.
 fn sampled(shape: Shape) -> Shape {
     union(vec![(shape, DVec3::ZERO)])
 }
@@ -78,7 +79,7 @@ fn at(place_mm: [f64; 2], depth_mm: f64, tilt: f64) -> Pose {
     }
 }
 
-/// Places and depths.
+/// All locations and depths.
 fn each() -> impl Iterator<Item = ([f64; 2], f64)> {
     PLACES_MM
         .into_iter()
@@ -91,7 +92,7 @@ fn force_n(reader: &mut FastReader, body: &Body, pose: Pose) -> f32 {
     -wrench[2]
 }
 
-/// A surface of boxes, each with its triangles outwards or inwards.
+/// A surface of boxes; the triangles of the first face outward, those of the others inward.
 fn boxes(boxes: &[([f64; 3], f64)]) -> (Shape, Surfaces) {
     let mut triangles = Vec::new();
     for (half_mm, middle_mm) in boxes {
@@ -240,7 +241,7 @@ fn a_sunk_plate_is_felt_in_every_position() {
     ] {
         let body = body(&shape);
         let mut before_n: Option<f32> = None;
-        // From the side, 2 mm deep.
+        // Moved in from the side, 2 mm deep.
         for step in 0..200 {
             let now_n = force_n(
                 &mut reader,
@@ -263,7 +264,7 @@ fn a_sunk_plate_is_felt_in_every_position() {
                 rotation,
             };
             let now_n = force_n(&mut reader, &body, pose);
-            // On its edge it may be between the points of the grid.
+            // On its edge the plate may lie between the points of the grid.
             assert!(
                 now_n > 0.1 || reader.novelty(&[(&body, pose)]) > 1.0,
                 "{shape:?} turned by {step}: {now_n}"
@@ -315,7 +316,7 @@ fn what_is_narrower_than_the_grid_is_new() {
     }
 }
 
-/// A box without a lid, of sheets.
+/// A box without a lid, made of sheets.
 fn tray(sheet_mm: f64) -> Shape {
     let sheet = |size_mm: [f64; 3], x_mm: f64, y_mm: f64| (plate(size_mm), DVec3::new(x_mm, y_mm, 0.0));
     let [x_mm, y_mm] = [5.0, 4.0].map(|half| half - 0.5 * sheet_mm);

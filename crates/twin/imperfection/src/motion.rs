@@ -1,19 +1,21 @@
-//! What the shifts of all ports have in common: how the sensor lies on its bench.
+//! The motion that the shifts of all ports have in common: the pose of the sensor on its test
+//! setup.
 
 use crate::width::{Width, mean};
 
-/// A rigid motion of ports in their plane, small turns.
+/// A rigid motion of ports in their plane, for small rotations.
 pub(crate) struct Motion {
     pub shift_mm: [f64; 2],
     pub shift_error_mm: f64,
     pub turn_rad: f64,
     pub turn_error_rad: f64,
-    /// What each port is off by itself along x and along y, mm.
+    /// Standard deviation of the rest of the ports' shifts along x and along y, mm.
     pub own_mm: Width,
 }
 
 impl Motion {
-    /// The least-squares one, of ports at these places; `None` of fewer than three, or where shifts were not fitted along both axes.
+    /// The least-squares motion of ports at these positions; `None` for fewer than three ports, or
+    /// if shifts were not fitted along both axes.
     pub(crate) fn of(shifts_mm: &[[f64; 2]], places_mm: &[[f64; 2]]) -> Option<Self> {
         let n = shifts_mm.len();
         let is_fitted = |axis: usize| shifts_mm.iter().any(|mm| mm[axis] != 0.0);
@@ -37,7 +39,7 @@ impl Motion {
             .zip(shifts_mm)
             .flat_map(|([x, y], [dx, dy])| [dx - shift_mm[0] + turn_rad * y, dy - shift_mm[1] - turn_rad * x])
             .collect();
-        // Shift and turn took three of the numbers.
+        // Shift and rotation take three degrees of freedom.
         let (all, freedom) = (2.0 * n as f64, (2 * n - 3) as f64);
         let own_mm = Width::about_zero(&own_mm)?.times((all / freedom).sqrt());
         Some(Self {

@@ -1,4 +1,5 @@
-//! What a trained model tells: how its taxels differ, how high it was mounted, where its ports are.
+//! Estimates from a trained model: differences between taxels, height of the installation,
+//! positions of the ports.
 
 use std::collections::BTreeSet;
 
@@ -10,26 +11,26 @@ use crate::motion::Motion;
 use crate::text::Line;
 use crate::width::{Width, digits, mean};
 
-/// So many standard errors make a shift or a turn.
+/// Number of standard errors above which a shift or a rotation counts.
 const SIGMAS: f64 = 2.0;
 
-/// What a model found of a cast sensor and its bench.
+/// What a model found about a cast sensor and its test setup.
 pub struct Casting<'a> {
-    /// Where the recordings come from that the model was trained with.
+    /// Provenance of the recordings that the model was trained on.
     pub provenance: Provenance,
     /// Whether the model has gains at all: the paper's network has none.
     pub has_gains: bool,
-    /// The gains that it found.
+    /// The gains of the taxels.
     pub gains: &'a Gains,
-    /// The bench that it found.
+    /// The calibration of the test setup.
     pub bench: &'a BenchEstimate,
     /// The sensor's description.
     pub sensor: &'a Sensor,
-    /// Taxels whose readings are not to be trusted, by index.
+    /// Indices of excluded taxels, whose readings are not to be trusted.
     pub doubtful: BTreeSet<usize>,
 }
 
-/// The lines that a model tells, or says that there is none.
+/// The lines of the fields that a model gives. Without a model each line says so.
 #[must_use]
 pub fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
     let Some(casting) = casting else {
@@ -41,7 +42,7 @@ pub fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
             "turn_deviation_rad",
             "tilt_deviation_rad",
         ];
-        let why = "a trained model tells it, and none was given";
+        let why = "it is found from a trained model, and none was given";
         return fields
             .into_iter()
             .map(|field| Line::left_out(field, why))
@@ -56,18 +57,18 @@ pub fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
         turn,
         Line::left_out(
             "tilt_deviation_rad",
-            "a model is trained on a level bench, or levelled by first touches that it does not keep",
+            "models are trained on a level test setup, or levelled by first touches that they do not store",
         ),
     ]
 }
 
 impl Casting<'_> {
-    /// Whether readings remember the frames before.
+    /// Whether readings depend on earlier frames.
     pub fn has_memory(&self) -> bool {
         self.gains.memory.iter().flatten().any(|share| *share > 0.0)
     }
 
-    /// Values of the taxels that are to be trusted.
+    /// Values of the taxels that are not excluded.
     fn trusted(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
         let taxels = 0..self.gains.gain.len();
         taxels
@@ -76,11 +77,11 @@ impl Casting<'_> {
             .collect()
     }
 
-    /// Says which taxels do not count.
+    /// Says how many taxels are excluded.
     fn without_doubtful(&self) -> String {
         match self.doubtful.len() {
             0 => String::new(),
-            n => format!(", without {n} doubtful"),
+            n => format!(", without {n} excluded"),
         }
     }
 
@@ -92,10 +93,10 @@ impl Casting<'_> {
         let gains = self.trusted(|taxel| self.gains.gain[taxel]);
         let usual = mean(&gains);
         let Some(width) = Width::about_mean(&gains).map(|width| width.times(1.0 / usual)) else {
-            return Line::left_out(field, "a spread takes two taxels");
+            return Line::left_out(field, "a spread requires two taxels");
         };
         let comment = format!(
-            "{} (model): spread of the taxels' gains within one sensor as part of their mean, {}, which is taken off{}; {}.",
+            "{} (model): spread of the taxels' gains within one sensor about their mean, {}, as a fraction of it{}; {}.",
             self.provenance,
             digits(usual, 3),
             self.without_doubtful(),
@@ -104,20 +105,21 @@ impl Casting<'_> {
         Line::given(field, width.value, comment)
     }
 
-    /// Growth goes with the port's pressure: it is compared at the same pressure, as of a taxel of usual gain.
+    /// The growth depends on the port's pressure, so it is converted to the same pressure for all
+    /// taxels, that of a taxel with mean gain.
     fn growth(&self) -> Line {
         let field = "growth_deviation_per_kpa";
         if !self.has_gains || self.gains.stiffening_per_kpa.iter().all(|growth| *growth == 0.0) {
-            return Line::left_out(field, "the model has no port law");
+            return Line::left_out(field, "the model has no static nonlinearity of the ports");
         }
         let usual = mean(&self.trusted(|taxel| self.gains.gain[taxel]));
         let growth =
             self.trusted(|taxel| self.gains.stiffening_per_kpa[taxel] * self.gains.gain[taxel] / usual);
         let Some(width) = Width::about_mean(&growth) else {
-            return Line::left_out(field, "a spread takes two taxels");
+            return Line::left_out(field, "a spread requires two taxels");
         };
         let comment = format!(
-            "{} (model): spread of the taxels' port laws about their mean, {} per kPa of a taxel of usual gain, which is taken off{}; {}.",
+            "{} (model): spread of the ports' static nonlinearity about its mean, {} per kPa for a taxel of mean gain{}; {}.",
             self.provenance,
             digits(mean(&growth), 3),
             self.without_doubtful(),
@@ -132,7 +134,8 @@ impl Casting<'_> {
         let values: Vec<f64> = heights.iter().map(|height| height.value).collect();
         let Some(width) = Width::about_mean(&values) else {
             let n = values.len();
-            let why = format!("a spread takes two mountings, and the model knows contact heights of {n}");
+            let why =
+                format!("a spread requires two installations, and the model has contact heights of {n}");
             return Line::left_out(field, why);
         };
         let squares: Vec<f64> = heights.iter().map(|height| height.uncertainty.powi(2)).collect();
@@ -140,13 +143,13 @@ impl Casting<'_> {
         let Some(width) = width.without(error_mm) else {
             let (found, error) = (digits(width.value, 2), digits(error_mm, 2));
             let why = format!(
-                "contact heights of {} mountings differ by {found} mm, no more than each is unsure of, {error} mm",
+                "contact heights of {} installations differ by {found} mm, no more than their standard error, {error} mm",
                 width.n
             );
             return Line::left_out(field, why);
         };
         let comment = format!(
-            "{} (model): spread of the contact heights of the mountings about their mean; what each is unsure of, {} mm, is taken off; {}.",
+            "{} (model): spread of the installations' contact heights about their mean, without their standard error, {} mm; {}.",
             self.provenance,
             digits(error_mm, 2),
             width.sureness()
@@ -154,15 +157,15 @@ impl Casting<'_> {
         Line::given(field, width.value, comment)
     }
 
-    /// Place and turn: the rigid motion that the ports' shifts have in common.
+    /// Position and rotation: the rigid motion that the ports' shifts have in common.
     fn mounting(&self) -> [Line; 2] {
         let fields = ["place_deviation_mm", "turn_deviation_rad"];
         let Some(motion) = self.motion() else {
-            let why = "it takes three ports whose places the model fitted along x and along y";
+            let why = "three ports whose positions the model fitted along x and y are required";
             return fields.map(|field| Line::left_out(field, why));
         };
         let own = format!(
-            "what ports are off by themselves, {} mm, is the casting's and not in here",
+            "the ports' individual shifts, {} mm, belong to the casting and are not included",
             digits(motion.own_mm.value, 2)
         );
         let line = |field, values: &[f64], error: f64, what: &str, unit: &str| {
@@ -173,7 +176,7 @@ impl Casting<'_> {
                     field,
                     width.value,
                     format!(
-                        "{} (model): {what} that the ports' shifts have in common, about zero, of one mounting; {own}; {}.",
+                        "{} (model): common {what} of the ports, about zero, of one installation; {own}; {}.",
                         self.provenance,
                         width.sureness()
                     ),
@@ -181,7 +184,7 @@ impl Casting<'_> {
                 None => Line::left_out(
                     field,
                     format!(
-                        "the {what} that the ports' shifts have in common, {} {unit}, does not stand out of its error, {}; {own}",
+                        "the common {what} of the ports, {} {unit}, is not significant against its error, {}; {own}",
                         digits(found.map_or(0.0, |found| found.value), 2),
                         digits(error, 2)
                     ),
@@ -197,7 +200,7 @@ impl Casting<'_> {
                 "shift along x and y",
                 "mm",
             ),
-            line(turn, &[motion.turn_rad], motion.turn_error_rad, "turn", "rad"),
+            line(turn, &[motion.turn_rad], motion.turn_error_rad, "rotation", "rad"),
         ]
     }
 
@@ -221,7 +224,7 @@ mod tests {
 
     use super::*;
 
-    /// A bench of so many mountings.
+    /// A calibrated setup with `n` installations of an indenter.
     fn bench(
         random: &mut RandomStream,
         n: usize,
@@ -263,7 +266,7 @@ mod tests {
         line.said.as_ref().ok().map(|given| given.value)
     }
 
-    /// Root mean square over many sensors of eight taxels whose widths are known.
+    /// The root mean square over many sensors of eight taxels with known widths.
     #[test]
     fn known_widths_of_gains_heights_and_mounting_are_recovered() {
         let sensor = SensorFile::phystac().unwrap().sensor;
@@ -336,8 +339,8 @@ mod tests {
             line.said.as_ref().err().unwrap().clone()
         };
         assert!(why("gain_deviation").contains("two taxels"));
-        assert!(why("growth_deviation_per_kpa").contains("no port law"));
-        assert!(why("height_deviation_mm").contains("two mountings"));
+        assert!(why("growth_deviation_per_kpa").contains("no static nonlinearity"));
+        assert!(why("height_deviation_mm").contains("two installations"));
         assert!(why("place_deviation_mm").contains("three ports"));
         assert!(lines(None).iter().all(|line| line.said.is_err()));
         casting.has_gains = false;

@@ -1,4 +1,5 @@
-//! What recordings tell: noise, steps, zeros, drift, hysteresis, rate, and taxels that fail.
+//! Estimates from recordings: noise, resolution, zeros, drift, hysteresis, frame rate, and faults
+//! of taxels.
 
 use std::collections::BTreeSet;
 
@@ -11,13 +12,14 @@ use crate::width::{Width, digits, mean, succession};
 /// Fine, dead, stuck and late.
 const N_FATES: usize = 4;
 
-/// What recordings told, and which taxels count: those that read and are not doubtful.
+/// A characterization, and the taxels that count: those that read and are not excluded.
 struct Told<'a> {
     found: &'a Characterization,
     taxels: BTreeSet<&'a str>,
 }
 
-/// The lines that recordings tell, or says that there are none. `has_memory`: the model beside them remembers.
+/// The lines of the fields that recordings give. Without recordings each line says so.
+/// `has_memory`: whether the model beside them has viscoelastic relaxation.
 #[must_use]
 pub fn lines(found: Option<&Characterization>, doubtful: &BTreeSet<usize>, has_memory: bool) -> Vec<Line> {
     let Some(found) = found else {
@@ -38,20 +40,19 @@ pub fn lines(found: Option<&Characterization>, doubtful: &BTreeSet<usize>, has_m
             "rate_hz",
             "jitter",
         ];
-        let why = "recordings tell it, and none were given";
+        let why = "it is found from recordings, and none were given";
         return fields
             .into_iter()
             .map(|field| Line::left_out(field, why))
             .collect();
     };
-    let surroundings =
-        "it belongs to where a sensor is used, not to the sensor; without it, drift is without effect";
+    let surroundings = "it belongs to the surroundings, not to the sensor; without it, drift has no effect";
     let told = Told::of(found, doubtful);
     let mut lines = vec![told.offset()];
     lines.extend(told.drift());
     lines.push(Line::left_out("temperature_deviation_k", surroundings));
     lines.push(Line::left_out("temperature_time_s", surroundings));
-    let spread = "what a taxel reads while another is pressed is mostly what the gel spreads, which the gel has by itself";
+    let spread = "the reading of a taxel while another is pressed is mostly the load that spreads in the gel, which the simulated gel includes";
     lines.push(Line::left_out("cross_talk", spread));
     lines.push(Line::left_out("cross_talk_deviation", spread));
     lines.extend(told.noise());
@@ -90,7 +91,7 @@ impl<'a> Told<'a> {
         let all = told(finding)?.iter();
         let counted: Vec<&T> = all.filter(|figure| self.taxels.contains(name(figure))).collect();
         if counted.is_empty() {
-            return Err("of no taxel that reads and is not doubtful".to_owned());
+            return Err("no working taxel that is not excluded has this figure".to_owned());
         }
         Ok(counted)
     }
@@ -108,7 +109,7 @@ impl<'a> Told<'a> {
             .map(|taxel| taxel.n_presses as f64 * taxel.rms_kpa.powi(2))
             .sum();
         let comment = format!(
-            "{} (recordings): root mean square of how far zeros are off right after a press, which has what the gel still remembers; {} to {} kPa by taxel, from {n} values.",
+            "{} (recordings): root mean square of the zeros' deviation right after a press, which includes the remaining viscoelastic relaxation; {} to {} kPa by taxel, from {n} values.",
             self.found.provenance,
             digits(rms.iter().copied().fold(f64::INFINITY, f64::min), 2),
             digits(rms.iter().copied().fold(0.0, f64::max), 2),
@@ -131,10 +132,10 @@ impl<'a> Told<'a> {
         let between = format!("{} to {} °C", digits(low_c, 3), digits(high_c, 3));
         let [common, own] = fields;
         let deviation = Width::about_mean(&coefficients).map_or_else(
-            || Line::left_out(own, "a spread takes two taxels"),
+            || Line::left_out(own, "a spread requires two taxels"),
             |width| {
                 let comment = format!(
-                    "{} (recordings): spread of that over the taxels; {}.",
+                    "{} (recordings): spread of these slopes over the taxels; {}.",
                     self.found.provenance,
                     width.sureness()
                 );
@@ -142,14 +143,15 @@ impl<'a> Told<'a> {
             },
         );
         let comment = format!(
-            "{} (recordings): mean slope of unloaded pressure over temperature of {} taxels, {between}; weather is in it.",
+            "{} (recordings): mean slope of unloaded pressure over temperature of {} taxels, {between}; includes the weather.",
             self.found.provenance,
             coefficients.len()
         );
         [Line::given(common, mean(&coefficients), comment), deviation]
     }
 
-    /// Noise and steps. A step adds its twelfth to the square of the noise (a uniform rounding error), which is taken off.
+    /// Noise and resolution. Uniform rounding to a step adds a twelfth of the step's square to the
+    /// square of the noise, which is subtracted.
     fn noise(&self) -> [Line; 2] {
         let fields = ["noise_deviation_kpa", "quantum_kpa"];
         let step_kpa = self.found.quantum.found().map_or(0.0, |quantum| quantum.step_kpa);
@@ -163,7 +165,7 @@ impl<'a> Told<'a> {
             let own = square - step_kpa.powi(2) / 12.0;
             if own <= 0.0 {
                 let why = format!(
-                    "unloaded readings differ by {} kPa, no more than their steps make",
+                    "unloaded readings differ by {} kPa, no more than their steps cause",
                     digits(square.sqrt(), 2)
                 );
                 return Line::left_out(fields[0], why);
@@ -192,11 +194,12 @@ impl<'a> Told<'a> {
         ]
     }
 
-    /// A play of half width `h`, as part of the reading, has a largest gap of 2 h / (1 + h) of full scale.
+    /// A play operator of half width `h`, as a fraction of the reading, has a largest gap of 2 h /
+    /// (1 + h) of full scale.
     fn hysteresis(&self, has_memory: bool) -> Line {
         let field = "hysteresis";
         if self.found.n_used == 0 {
-            let why = "both ways are compared at the same force, and of no press it is known";
+            let why = "loading and unloading are compared at the same force, and no press has a known force";
             return Line::left_out(field, why);
         }
         let taxels = match self.counted(&self.found.hysteresis, |taxel| &taxel.taxel) {
@@ -207,13 +210,13 @@ impl<'a> Told<'a> {
         let gap = mean(&gaps);
         if !(0.0..1.0).contains(&gap) {
             let why = format!(
-                "the way down differs from the way up by {} % of full scale, which no play does",
+                "loading differs from unloading by {} % of full scale, which a play operator cannot describe",
                 digits(100.0 * gap, 2)
             );
             return Line::left_out(field, why);
         }
         let twin = if has_memory {
-            " The model remembers, which makes loops as well: leave this out of a batch with that twin."
+            " The model has viscoelastic relaxation, which causes hysteresis as well: leave this out of a batch with that twin."
         } else {
             ""
         };
@@ -238,16 +241,16 @@ fn fates(conditions: &[Condition], provenance: Provenance) -> [Line; 3] {
     ];
     fates.map(|(field, fate, word)| {
         if fate == Fate::Late && n_timed == 0 {
-            let why = "no press is so fast that it tells whether a taxel is a frame behind";
+            let why = "no press is fast enough to show whether a taxel is late by a frame";
             return Line::left_out(field, why);
         }
         let seen = conditions.iter().filter(|taxel| taxel.fate == fate).count();
         let told = if fate == Fate::Late {
-            format!(", of which {n_timed} could be told")
+            format!(", of which {n_timed} could be checked")
         } else {
             String::new()
         };
-        let mostly = if seen == 0 { "; mostly what the rule assumes" } else { "" };
+        let mostly = if seen == 0 { "; mostly the prior of the rule" } else { "" };
         let comment = format!(
             "{provenance} (recordings): {seen} of {n} taxels {word}{told}; rule of succession for four fates, ({seen} + 1) / ({n} + {N_FATES}){mostly}."
         );
@@ -267,7 +270,7 @@ fn timing(found: &Characterization) -> [Line; 2] {
         "{provenance} (recordings): one over the mean time between frames, by their time stamps; from {n} values, without {n_gaps} gaps."
     );
     let jitter_comment = format!(
-        "{provenance} (recordings): standard deviation of these times as part of their mean; from {n} values."
+        "{provenance} (recordings): standard deviation of these times as a fraction of their mean; from {n} values."
     );
     [
         Line::given(rate, timing.rate_hz, rate_comment),

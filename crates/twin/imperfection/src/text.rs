@@ -1,15 +1,15 @@
-//! The file of imperfections: every line with a comment.
+//! The file of the sensor variation: every line with a comment.
 
 use crate::width::rounded;
 
-/// Longest line of a comment, in characters.
+/// Largest length of a comment line, in characters.
 const LONGEST: usize = 140;
 
 /// A field of the file.
 pub struct Line {
     /// Its name.
     pub field: &'static str,
-    /// The value and where it comes from, or why there is none.
+    /// The value with its source, or why there is none.
     pub said: Result<Given, String>,
 }
 
@@ -17,7 +17,7 @@ pub struct Line {
 pub struct Given {
     /// The value, in the unit of the field.
     pub value: f64,
-    /// Where it comes from, and on how many values it rests.
+    /// Its source, and the number of values that it is estimated from.
     pub comment: String,
 }
 
@@ -41,15 +41,13 @@ impl Line {
     }
 }
 
-/// The file's text. Values have three digits.
+/// The file's text. Values have three significant digits.
 #[must_use]
 pub fn text(sensor: &str, command: &str, lines: &[Line]) -> String {
-    let mut text = comment(&format!(
-        "How far sensors like {sensor} are from perfect, as found by"
-    ));
+    let mut text = comment(&format!("Variation of sensors like {sensor}, found by"));
     text += &format!("#   {command}\n");
     text += &comment(
-        "`±` is a standard error. What could not be found is left out, and stands here with the reason. Fill it in by hand if you know it.",
+        "`±` is a standard error. Values that could not be found are left out, with the reason. Fill them in by hand if you know them.",
     );
     text += "\n[imperfection]\n";
     for Line { field, said } in lines {
@@ -64,7 +62,7 @@ pub fn text(sensor: &str, command: &str, lines: &[Line]) -> String {
     text
 }
 
-/// Words as lines of a comment.
+/// Text as comment lines.
 fn comment(words: &str) -> String {
     let mut lines = String::new();
     let mut line = String::from("#");

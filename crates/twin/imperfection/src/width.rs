@@ -1,9 +1,10 @@
-//! Widths from a few values, and how sure they are.
+//! Standard deviations from a few values, with their standard errors.
 
-/// Below so many values a width says that they are few.
+/// Number of values below which a text says that they are few.
 const FEW: usize = 20;
 
-/// A standard deviation, its standard error if values are normal, and on how many values it rests.
+/// A standard deviation, its standard error for normally distributed values, and the number of
+/// values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Width {
     pub value: f64,
@@ -12,14 +13,14 @@ pub(crate) struct Width {
 }
 
 impl Width {
-    /// Of values about their mean; `None` of fewer than two.
+    /// About the mean of the values; `None` for fewer than two.
     pub(crate) fn about_mean(values: &[f64]) -> Option<Self> {
         let middle = mean(values);
         let square: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
         (values.len() > 1).then(|| Self::of(square, values.len() - 1, values.len()))
     }
 
-    /// Of values about zero; `None` of none.
+    /// About zero; `None` without values.
     pub(crate) fn about_zero(values: &[f64]) -> Option<Self> {
         let square: f64 = values.iter().map(|value| value.powi(2)).sum();
         (!values.is_empty()).then(|| Self::of(square, values.len(), values.len()))
@@ -43,7 +44,8 @@ impl Width {
         }
     }
 
-    /// Without what the values' own errors add to it, whose root mean square this is; `None` if nothing is left.
+    /// Subtracts, in squares, the root mean square of the values' own errors; `None` if nothing is
+    /// left.
     pub(crate) fn without(self, error: f64) -> Option<Self> {
         let square = self.value.powi(2) - error.powi(2);
         (square > 0.0).then(|| Self {
@@ -53,19 +55,20 @@ impl Width {
         })
     }
 
-    /// In words: `± 0.03; 8 values only`.
+    /// As text: `± 0.03, from 8 values only`.
     pub(crate) fn sureness(&self) -> String {
         let only = if self.n < FEW { " only" } else { "" };
         format!("± {}, from {} values{only}", digits(self.uncertainty, 2), self.n)
     }
 }
 
-/// Mean; zero of nothing.
+/// The mean; zero without values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Chance that a taxel has one of `n_fates` fates, which `seen` of `n` taxels had: Laplace's rule of succession for several outcomes.
+/// Probability of one of `n_fates` states, which `seen` of `n` taxels had: Laplace's rule of
+/// succession for several outcomes.
 pub(crate) fn succession(seen: usize, n: usize, n_fates: usize) -> f64 {
     (seen + 1) as f64 / (n + n_fates) as f64
 }
@@ -75,7 +78,7 @@ pub(crate) fn rounded(value: f64, n_digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
-    // Through text, so that 0.3 is 0.3.
+    // Conversion through text gives exactly 0.3 for 0.3.
     let n_digits = (n_digits - 1).max(0) as usize;
     format!("{value:.n_digits$e}").parse().unwrap_or(value)
 }
@@ -102,7 +105,8 @@ mod tests {
             off += ((found.value - 0.2) / (0.2 / 14.0_f64.sqrt())).powi(2);
             assert!((found.uncertainty - found.value / 14.0_f64.sqrt()).abs() < 1e-12);
         }
-        // The standard error of a deviation of eight values is a quarter of it, and deviations are off by as much.
+        // The standard error of a standard deviation of eight values is about a quarter of it. The
+        // estimates must deviate by about that much.
         assert!((0.8..1.25).contains(&(off / 400.0)), "{off}");
         let many: Vec<f64> = (0..4000).map(|_| normal(&mut random, 0.2)).collect();
         let found = Width::about_zero(&many).unwrap();

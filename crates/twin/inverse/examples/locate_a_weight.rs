@@ -1,7 +1,9 @@
-//! Finds where a weight lies, from real readings: `cargo run --release -p twintac-inverse --example locate_a_weight -- DS10_atm_pitch6.75.csv`.
+//! Finds the location of a weight from `real` readings:
+//! `cargo run --release -p twintac-inverse --example locate_a_weight -- DS10_atm_pitch6.75.csv`.
 //!
-//! The file is one of array8 (Shaevitzaiden/Underwater-Tactile-Sensor, 2024): x and y, mm, on a grid of 0.5 mm, then eight readings, psi. Readings on
-//! a lattice of 2, 3 or 4 mm teach, as a table; all others judge, each by itself.
+//! The file is one of array8 (Shaevitzaiden/Underwater-Tactile-Sensor, 2024): x and y, mm, on a
+//! grid of 0.5 mm, then eight readings, psi. The readings on a lattice of 2, 3 or 4 mm make a
+//! table. All other readings are used for evaluation, each by itself.
 
 #![allow(clippy::print_stdout)] // a program
 
@@ -16,10 +18,10 @@ const PSI_KPA: f64 = 6.894_757;
 /// Distance of the grid's points, mm. The file's numbers are rounded to it.
 const GRID_MM: f64 = 0.5;
 
-/// Standard deviation of a reading, as part of the file's largest.
+/// Standard deviation of a reading, as a fraction of the file's largest reading.
 const NOISE: f64 = 0.003;
 
-/// What is read at a point of the grid.
+/// The readings at a point of the grid.
 struct Point {
     /// Column and row.
     at: [usize; 2],
@@ -122,7 +124,7 @@ fn largest(readings_kpa: &[f64]) -> usize {
         .unwrap_or(0)
 }
 
-/// Where each taxel reads most, mm.
+/// The location of each taxel's largest reading, mm.
 fn strongest(points: &[Point]) -> Vec<DVec2> {
     let n_taxels = points.first().map_or(0, |point| point.readings_kpa.len());
     let of = |taxel: usize| {

@@ -1,35 +1,35 @@
-//! What can be wrong with an inverse.
+//! Errors of contact estimation.
 
 use twintac_config::Problem;
 use twintac_shape::ShapeError;
 
-/// Why there is no inverse, or no contact.
+/// Why an [`Inverse`](crate::Inverse) cannot be made, or a frame cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InverseError {
-    /// A shape that can't be.
+    /// An impossible shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// More is known of a shape than can be searched.
+    /// The table of a shape is too large to be searched.
     #[error(
         "a shape's table has {presses:.0} presses of {readings} readings, at most {most:.0} numbers can be searched; \
-         let it span less, or the sensor have fewer ports"
+         reduce the range of the shape, or the number of ports"
     )]
     TooLarge {
-        /// Presses of the table, 2 mm apart.
+        /// Number of presses in the table, whose locations are 2 mm apart.
         presses: f64,
-        /// Readings of each.
+        /// Number of readings of each press.
         readings: usize,
-        /// Most numbers in all.
+        /// Largest number of values in a table.
         most: f64,
     },
-    /// No shape is known.
-    #[error("no known shape: at least one is needed")]
+    /// There is no known shape.
+    #[error("there is no known shape: at least one is needed")]
     NoShape,
-    /// A setting that can't be.
-    #[error("the inverse's setting {0}")]
+    /// A setting outside its range.
+    #[error("the setting of the contact estimation {0}")]
     Setting(Problem),
-    /// A frame that can't be.
+    /// Readings or a time outside their ranges.
     #[error("a frame's {0}")]
     Frame(Problem),
 }

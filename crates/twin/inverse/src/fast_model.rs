@@ -1,4 +1,4 @@
-//! The fast gel as a model of contacts.
+//! The surrogate of the gel ([`FastGel`]) as a forward model of contacts.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::contact::Contact;
 use crate::model::{ContactModel, Domain, Press};
 use crate::turn::turn_rad;
 
-/// A shape that may touch.
+/// A shape that may be in contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KnownShape {
     /// Its name.
@@ -20,9 +20,10 @@ pub struct KnownShape {
     pub shape: Shape,
 }
 
-/// What a fast gel reads of known shapes that press upright.
+/// Readings of a [`FastGel`] under known shapes that press upright.
 ///
-/// First touch is where a shape's lowest point is as high as the gel at its place: exact for flat gels.
+/// First touch is where the lowest point of a shape is at the height of the gel at its location.
+/// This is exact for flat gels.
 #[derive(Clone, Debug)]
 pub struct FastModel {
     gel: Arc<FastGel>,
@@ -34,16 +35,16 @@ pub struct FastModel {
 #[derive(Clone, Debug)]
 struct Placed {
     body: Body,
-    /// Height of its lowest point in its own frame, mm.
+    /// Height of the body's lowest point in its own frame, mm.
     lowest_mm: f64,
     turn_rad: Option<f64>,
 }
 
 impl FastModel {
-    /// Shapes pressed to a depth below first touch, mm.
+    /// A model of these shapes, for presses down to `deepest_mm` below first touch.
     ///
     /// # Errors
-    /// A shape that can't be.
+    /// An impossible shape.
     pub fn new(
         gel: &FastGel,
         shapes: &[KnownShape],
@@ -72,7 +73,7 @@ impl FastModel {
         &self.gel
     }
 
-    /// The body that a contact tells, and where it is in the gel's frame.
+    /// The body of a contact, and its pose in the gel's frame.
     #[must_use]
     pub fn placed(&self, contact: &Contact) -> (&Body, Pose) {
         let placed = &self.bodies[contact.shape];

@@ -1,4 +1,4 @@
-//! The pressure on the gel's floor under a contact, finer than the taxels.
+//! The pressure at the base of the gel under a contact, at more points than there are taxels.
 
 use glam::DVec2;
 use twintac_config::Problem;
@@ -9,10 +9,11 @@ use crate::error::InverseError;
 use crate::fast_model::FastModel;
 use crate::inverse::Inverse;
 
-/// Points of the finest map.
+/// Largest number of points of a map.
 const MOST_POINTS: f64 = 1e7;
 
-/// Reads the floor's pressure on a grid: what the contact would make there by the fast gel.
+/// Computes the pressure at the base of the gel on a grid, from the estimated contact and the
+/// [`FastGel`](twintac_fast::FastGel).
 #[derive(Clone, Debug)]
 pub struct FloorMap {
     model: FastModel,
@@ -24,10 +25,12 @@ pub struct FloorMap {
 }
 
 impl Inverse<FastModel> {
-    /// Prepares maps of the floor on a grid of this spacing, mm, in the middle of the gel. 0.5 mm makes about 2,500 points of PhysTac's floor.
+    /// Prepares maps of the base of the gel on a centred grid of this spacing, mm. A spacing of 0.5
+    /// mm makes about 2,500 points for PhysTac.
     ///
     /// # Errors
-    /// [`InverseError::Setting`]: a spacing that is not above zero, or makes more than ten million points.
+    /// [`InverseError::Setting`]: a spacing that is not above zero, or that makes more than ten
+    /// million points.
     pub fn floor_map(&self, spacing_mm: f64) -> Result<FloorMap, InverseError> {
         let refused =
             |hint: &str| InverseError::Setting(Problem::new("spacing_mm", format!("is {spacing_mm}"), hint));
@@ -58,7 +61,8 @@ impl Inverse<FastModel> {
 }
 
 impl FloorMap {
-    /// The map under a contact, kPa, row by row along x; `[n_y * n_x]`. Each point is the mean over a disc as large as a port.
+    /// The map under a contact, kPa, row by row along x; `[n_y * n_x]`. Each value is the mean over
+    /// a disc of the size of a port.
     pub fn read(&mut self, contact: &Contact) -> &[f32] {
         let (body, gel_from_body) = self.model.placed(contact);
         self.reader
@@ -66,13 +70,13 @@ impl FloorMap {
         &self.pressure_kpa
     }
 
-    /// Points along x and along y.
+    /// Number of points along x and along y.
     #[must_use]
     pub fn n(&self) -> [usize; 2] {
         self.n
     }
 
-    /// Place of the point at a column and a row, mm.
+    /// Location of the point at a column and a row, mm.
     #[must_use]
     pub fn place_mm(&self, column: usize, row: usize) -> DVec2 {
         self.first_mm + self.spacing_mm * DVec2::new(column as f64, row as f64)

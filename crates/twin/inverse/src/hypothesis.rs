@@ -1,38 +1,39 @@
-//! One possible press of one shape, followed from frame to frame: Gauss and Newton's steps towards the most probable press, between what was
-//! known before and what is read now (an extended Kalman filter, iterated and damped), and how probable the readings are by it (Laplace).
+//! One possible press of one shape, followed from frame to frame. Gauss-Newton steps lead towards
+//! the most probable press, given what was known before and what is read now (an extended Kalman
+//! filter, iterated and damped). Laplace's approximation gives the probability of the readings.
 
 use crate::matrix::{Matrix, Vector, form, inverse, solve, times, triangle};
 use crate::model::{ContactModel, N, Press};
 use crate::settings::InverseSettings;
 use crate::turn::nearest;
 
-/// Steps of the differences that slopes are taken from: mm, mm, mm, radians.
+/// Steps of the difference quotients: mm, mm, mm, radians.
 const DIFFERENCES: Vector = [0.2, 0.2, 0.06, 0.05];
 
-/// Longest ways in one step: mm, mm, mm, radians.
+/// Largest changes in one step: mm, mm, mm, radians.
 const LONGEST: Vector = [2.0, 2.0, 1.0, 0.35];
 
-/// Damping, as parts of the diagonal: at first, least, and largest.
+/// Initial, smallest and largest damping, as fractions of the diagonal.
 const DAMPING: [f64; 3] = [1e-2, 1e-4, 1e3];
 
-/// A frame as it is weighed.
+/// A frame with its weights.
 pub(crate) struct Weighed<'a> {
-    /// kPa, `[n_readings]`
+    /// Readings, kPa; `[n_readings]`.
     pub(crate) readings_kpa: &'a [f32],
-    /// One over the variance of each reading in this frame.
+    /// Inverse variance of each reading in this frame; `[n_readings]`.
     pub(crate) weights: &'a [f64],
-    /// Time since the frame before, s.
+    /// Time since the previous frame, s.
     pub(crate) since_s: f64,
 }
 
-/// What a hypothesis needs of its shape.
+/// Ranges and prior variances of a shape's presses.
 #[derive(Clone, Debug)]
 pub(crate) struct Prior {
     pub(crate) shape: usize,
     ranges: [[f64; 2]; N],
     turn_rad: Option<f64>,
     is_free: [bool; N],
-    /// Variances of what nobody knows anything about.
+    /// Variances without any information.
     broad: Vector,
 }
 
@@ -45,7 +46,8 @@ impl Prior {
             ranges,
             turn_rad: domain.turn_rad,
             is_free: ranges.map(|[low, high]| high > low),
-            // Of an even distribution; what is known is not looked for, whatever stands here.
+            // Variances of uniform distributions. For a fixed number the value does not matter,
+            // because it is not estimated.
             broad: ranges.map(|[low, high]| {
                 if high > low {
                     (high - low).powi(2) / 12.0
@@ -66,12 +68,12 @@ impl Prior {
         at
     }
 
-    /// Whether a number is looked for.
+    /// Whether a number is estimated.
     pub(crate) fn is_free(&self, number: usize) -> bool {
         self.is_free[number]
     }
 
-    /// From one press to another, the short way around.
+    /// Difference from one press to another, with the shorter rotation.
     pub(crate) fn way(&self, from: &Vector, to: &Vector) -> Vector {
         let mut way: Vector = std::array::from_fn(|number| to[number] - from[number]);
         way[N - 1] = self
@@ -87,24 +89,26 @@ pub(crate) struct Hypothesis {
     pub(crate) at: Vector,
     pub(crate) covariance: Matrix,
     pub(crate) force_n: f64,
-    /// How the force changes with each number.
+    /// Derivatives of the force with respect to each number.
     pub(crate) force_slope: Vector,
-    /// Logarithm of how probable all readings are by its presses, with what was forgotten taken off.
+    /// Logarithm of the probability of all readings given its presses, minus what was forgotten.
     pub(crate) evidence: f64,
-    /// Logarithm of the part of all presses of the shape that fit as well (Occam's factor, by Laplace): a shape is no more probable for having
-    /// more to choose from. It counts once, not in each frame: what is known is forgotten and learned again all the time.
+    /// Logarithm of the fraction of all presses of the shape that fit as well (Occam's factor, by
+    /// Laplace's approximation). With it, a shape with more freedom is not more probable for that
+    /// reason. It counts once and not in each frame, because information is forgotten and gained
+    /// again all the time.
     occam: f64,
-    /// What this frame added to it.
+    /// This frame's contribution to the evidence.
     pub(crate) gain: f64,
-    /// Sum of the weighted squares of what is left of this frame's readings.
+    /// Weighted sum of squares of this frame's residuals.
     pub(crate) cost: f64,
     pub(crate) is_alive: bool,
-    /// Frames that it has left to come near a good press before it is judged; 0: it is judged.
+    /// Frames that it may still take to approach a good press before it counts; 0: it counts.
     pub(crate) on_trial: u32,
     damping: f64,
     readings_kpa: Vec<f32>,
     trial_kpa: Vec<f32>,
-    /// `[N][n_readings]`
+    /// Derivatives of the readings; `[N][n_readings]`.
     slopes: [Vec<f64>; N],
 }
 
@@ -128,7 +132,7 @@ impl Hypothesis {
         }
     }
 
-    /// Begins at a press, of which nothing else is known, so many frames on trial.
+    /// Begins at a press without any other information. It is on trial for `on_trial` frames.
     pub(crate) fn begin<M: ContactModel>(&mut self, model: &mut M, prior: &Prior, at: Vector, on_trial: u32) {
         self.at = prior.within(at);
         self.covariance = [[0.0; N]; N];
@@ -143,17 +147,17 @@ impl Hypothesis {
         self.force_n = model.read(prior.shape, &Press::of(self.at), &mut self.readings_kpa);
     }
 
-    /// How probable it is: a logarithm, up to what is the same for all.
+    /// Logarithm of its probability, up to a constant that is the same for all hypotheses.
     pub(crate) fn score(&self) -> f64 {
         self.evidence + self.occam
     }
 
-    /// Whether it counts.
+    /// Whether it counts: it is alive and not on trial.
     pub(crate) fn is_judged(&self) -> bool {
         self.is_alive && self.on_trial == 0
     }
 
-    /// Takes notice of a frame.
+    /// Updates the press with a frame.
     pub(crate) fn update<M: ContactModel>(
         &mut self,
         model: &mut M,
@@ -190,7 +194,7 @@ impl Hypothesis {
         self.occam = -0.5 * (log_information + prior.broad.iter().map(|broad| broad.ln()).sum::<f64>());
     }
 
-    /// What is known before a frame: what was known, less sure after a while.
+    /// The covariance before a frame: the last one, increased with the time since then.
     fn spread(&self, prior: &Prior, since_s: f64, settings: &InverseSettings) -> Matrix {
         let grown = (since_s / settings.correlated_s.max(1e-9)).min(30.0).exp();
         let walk = [
@@ -203,7 +207,7 @@ impl Hypothesis {
         for number in 0..N {
             spread[number][number] += walk[number].powi(2) * since_s;
         }
-        // Nobody knows less than nothing.
+        // A variance is never larger than the prior one.
         let shrink: Vector =
             std::array::from_fn(|number| (prior.broad[number] / spread[number][number]).sqrt().min(1.0));
         std::array::from_fn(|row| {
@@ -231,7 +235,7 @@ impl Hypothesis {
         }
     }
 
-    /// What is known with a frame.
+    /// The inverse covariance after a frame.
     fn information(&self, known: &Matrix, frame: &Weighed<'_>) -> Matrix {
         let mut information = *known;
         for (row, along) in information.iter_mut().zip(&self.slopes) {
@@ -243,7 +247,7 @@ impl Hypothesis {
         information
     }
 
-    /// What the press leaves of the readings, kPa.
+    /// Residuals of the readings, kPa; `[n_readings]`.
     fn left<'a>(&'a self, frame: &'a Weighed<'_>) -> impl Iterator<Item = f64> + 'a {
         let both = frame.readings_kpa.iter().zip(&self.readings_kpa);
         both.map(|(read, own)| f64::from(read - own))
@@ -255,7 +259,7 @@ impl Hypothesis {
             .sum()
     }
 
-    /// What the press leaves of readings, as a root mean square in deviations.
+    /// Root mean square of the residuals, in standard deviations.
     pub(crate) fn misfit(&self, readings_kpa: &[f32], weights: &[f64]) -> f64 {
         let frame = Weighed {
             readings_kpa,
@@ -265,7 +269,8 @@ impl Hypothesis {
         (self.cost_of(&self.readings_kpa, &frame) / weights.len().max(1) as f64).sqrt()
     }
 
-    /// One damped step (Levenberg and Marquardt), taken if it leads down.
+    /// One damped step (Levenberg and Marquardt). It is taken only if it does not increase the
+    /// cost.
     fn step<M: ContactModel>(
         &mut self,
         model: &mut M,

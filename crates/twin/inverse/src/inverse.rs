@@ -1,4 +1,4 @@
-//! From readings to contacts: what is prepared once for all sensors of a kind.
+//! What is prepared once for all sensors of a kind.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::model::ContactModel;
 use crate::settings::InverseSettings;
 use crate::starts::Starts;
 
-/// What is prepared of a model and its known shapes.
+/// A forward model, and the tables that are prepared for its known shapes.
 #[derive(Clone, Debug)]
 pub struct Inverse<M> {
     pub(crate) model: M,
@@ -28,10 +28,11 @@ pub(crate) struct Prepared {
 }
 
 impl Inverse<FastModel> {
-    /// Of a fast gel and the shapes that may touch it, upright. Takes a fraction of a second for a few shapes, on all threads.
+    /// For a [`FastGel`] and the shapes that may touch it, upright. Takes a fraction of a second
+    /// for a few shapes, on all threads.
     ///
     /// # Errors
-    /// No shape, a shape that can't be, settings that can't be, more ports than can be searched.
+    /// No shape, an impossible shape, a setting outside its range, or too many ports for a search.
     pub fn of_fast_gel(
         gel: &FastGel,
         shapes: &[KnownShape],
@@ -47,10 +48,10 @@ impl Inverse<FastModel> {
 }
 
 impl<M: ContactModel> Inverse<M> {
-    /// Of any model.
+    /// For any forward model.
     ///
     /// # Errors
-    /// No shape, settings that can't be, shapes whose tables are too large to be searched.
+    /// No shape, a setting outside its range, or a shape whose table is too large to be searched.
     pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
         settings.checked().map_err(InverseError::Setting)?;
         if model.n_shapes() == 0 {
@@ -70,19 +71,19 @@ impl<M: ContactModel> Inverse<M> {
         })
     }
 
-    /// The model.
+    /// The forward model.
     #[must_use]
     pub fn model(&self) -> &M {
         &self.model
     }
 
-    /// What is assumed.
+    /// The settings.
     #[must_use]
     pub fn settings(&self) -> &InverseSettings {
         &self.settings
     }
 
-    /// Known shapes.
+    /// Number of known shapes.
     #[must_use]
     pub fn n_shapes(&self) -> usize {
         self.shapes.len()

@@ -6,20 +6,21 @@ pub(crate) type Vector = [f64; N];
 
 pub(crate) type Matrix = [[f64; N]; N];
 
-/// The lower triangle of a positive definite matrix; above it stands what stood there.
+/// The lower triangular (Cholesky) factor of a positive definite matrix. Values above the diagonal
+/// are those of the matrix.
 pub(crate) fn triangle(matrix: &Matrix) -> Matrix {
     let mut lower = *matrix;
     twintac_fit::factorize(lower.as_flattened_mut(), N);
     lower
 }
 
-/// Solves a system by its triangle.
+/// Solves a system of equations with its triangular factor.
 pub(crate) fn solve(lower: &Matrix, mut right: Vector) -> Vector {
     twintac_fit::solve_by(lower.as_flattened(), &mut right);
     right
 }
 
-/// The inverse of a positive definite matrix, and the logarithm of the matrix's determinant.
+/// The inverse of a positive definite matrix, and the logarithm of the determinant of the matrix.
 pub(crate) fn inverse(matrix: &Matrix) -> (Matrix, f64) {
     let lower = triangle(matrix);
     let mut inverse = [[0.0; N]; N];
@@ -31,7 +32,7 @@ pub(crate) fn inverse(matrix: &Matrix) -> (Matrix, f64) {
     (inverse, logarithm)
 }
 
-/// `vᵀ M v`
+/// `vᵀ M v`.
 pub(crate) fn form(matrix: &Matrix, vector: &Vector) -> f64 {
     let product = times(matrix, vector);
     product.iter().zip(vector).map(|(a, b)| a * b).sum()

@@ -1,18 +1,18 @@
-//! What the inverse asks of a model of a sensor.
+//! The forward model of a sensor that contact estimation needs.
 
 use glam::DVec2;
 
-/// Numbers that say how a shape presses: x, y, depth, spin.
+/// Number of values that describe a press: x, y, depth, yaw.
 pub(crate) const N: usize = 4;
 
-/// A known shape that presses upright.
+/// An upright press of a known shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Press {
-    /// Place of the shape's origin in the gel's plane, mm.
+    /// Location of the shape's origin in the gel's plane, mm.
     pub place_mm: DVec2,
     /// Depth below first touch, mm.
     pub depth_mm: f64,
-    /// Turn about the vertical, radians.
+    /// Yaw (rotation about the vertical), radians.
     pub spin_rad: f64,
 }
 
@@ -26,19 +26,20 @@ impl Press {
     }
 }
 
-/// Which presses of a shape are thought of. A number whose least is its largest is known, and is not looked for.
+/// The presses of a shape that are considered. A value whose smallest equals its largest is known,
+/// and is not estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
-    /// Corners of the rectangle of places, mm.
+    /// Corners of the rectangle of locations, mm.
     pub places_mm: [DVec2; 2],
-    /// Least and largest depth below first touch, mm.
+    /// Smallest and largest depth below first touch, mm.
     pub depths_mm: [f64; 2],
-    /// After which turn the shape looks the same, radians; `None` for a round one.
+    /// Rotation after which the shape looks the same, radians; `None` for a round shape.
     pub turn_rad: Option<f64>,
 }
 
 impl Domain {
-    /// Least and largest of each number.
+    /// Smallest and largest value of each number.
     pub(crate) fn ranges(&self) -> [[f64; 2]; N] {
         let [low, high] = self.places_mm;
         [
@@ -50,18 +51,18 @@ impl Domain {
     }
 }
 
-/// What a sensor reads of known shapes that press it.
+/// The forward model of a sensor: its readings under known shapes.
 pub trait ContactModel: Clone + Send + Sync {
-    /// Readings of a frame.
+    /// Number of readings of a frame.
     fn n_readings(&self) -> usize;
 
-    /// Known shapes.
+    /// Number of known shapes.
     fn n_shapes(&self) -> usize;
 
-    /// Which presses of a shape are thought of.
+    /// The presses of a shape that are considered.
     fn domain(&self, shape: usize) -> Domain;
 
-    /// Writes what is read of a shape that presses, kPa above the untouched sensor, `[n_readings]`. Returns the force into the gel, N; 0 where
-    /// it is not known.
+    /// Writes the readings under a shape, kPa above the sensor without contact, `[n_readings]`.
+    /// Returns the force into the gel, N; 0 where it is not known.
     fn read(&mut self, shape: usize, press: &Press, readings_kpa: &mut [f32]) -> f64;
 }

@@ -1,40 +1,44 @@
-//! What the inverse assumes.
+//! Settings of contact estimation.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
 
-/// How sure readings and model are, and how fast a contact changes.
+/// Uncertainty of readings and forward model, and how fast a contact may change.
 ///
-/// The variance of a reading `p` in a frame, where `m` is the largest reading: `noise² + (model_part p)² + (model_part_of_largest m)²`. The noise
-/// of two frames is independent. The error of the model is not: frames within `correlated_s` count as one.
+/// The variance of a reading `p` in a frame with the largest reading `m` is
+/// `noise² + (model_part p)² + (model_part_of_largest m)²`. The noise of two frames is independent.
+/// The error of the model is not: frames within `correlated_s` count as one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InverseSettings {
     /// Standard deviation of a reading's noise, kPa.
     pub noise_kpa: f64,
-    /// Standard deviation of the model's error as part of each reading.
+    /// Standard deviation of the model's error as a fraction of each reading.
     pub model_part: f64,
-    /// The same as part of the frame's largest reading.
+    /// Standard deviation of the model's error as a fraction of the frame's largest reading.
     pub model_part_of_largest: f64,
-    /// The same of the force, as part of it.
+    /// Standard deviation of the model's error of the force, as a fraction of the force.
     pub force_part: f64,
     /// Time within which errors of the model count as one, s.
     pub correlated_s: f64,
-    /// A contact is what reads so many deviations of the noise, at one taxel at least.
+    /// There is a contact if at least one reading is this many standard deviations of the noise
+    /// above zero.
     pub touch_deviations: f64,
-    /// Standard deviation of how far a contact wanders along x and along y in a second, mm; it grows with the root of time.
+    /// Standard deviation of the random motion of a contact along x and along y in one second, mm;
+    /// it grows with the square root of time.
     pub place_walk_mm: f64,
-    /// The same of the depth, mm.
+    /// Standard deviation of the random change of depth in one second, mm.
     pub depth_walk_mm: f64,
-    /// The same of the spin, radians.
+    /// Standard deviation of the random change of yaw in one second, radians.
     pub spin_walk_rad: f64,
-    /// Time after which what told the shape is forgotten to a part of 1/e, s.
+    /// Time after which evidence for a shape is reduced to 1/e, s.
     pub shape_memory_s: f64,
-    /// Possible presses of each shape that are followed at once, at most 100.
+    /// Number of possible presses of each shape that are followed at once, at most 100.
     pub n_starts: usize,
-    /// Steps towards the best press of each of them in a frame, at most 100.
+    /// Number of steps that each of them takes in a frame, at most 100.
     pub n_steps: usize,
-    /// Deepest press that is thought of, mm below first touch, at most 50. For a fast gel: not deeper than it was taught.
+    /// Largest depth that is considered, mm below first touch, at most 50. For a surrogate
+    /// (`FastGel`): not deeper than it was trained.
     pub deepest_mm: f64,
 }
 

@@ -1,4 +1,5 @@
-//! Where to begin: readings of a shape all over its domain, the best of which are near the press that is looked for.
+//! Where to begin: readings of a shape at presses all over its domain. The best of these presses
+//! are near the one that is sought.
 
 use rayon::prelude::*;
 
@@ -6,35 +7,37 @@ use crate::error::InverseError;
 use crate::model::{ContactModel, N, Press};
 use crate::turn::nearest;
 
-/// Distance of the places, mm.
+/// Spacing of the locations, mm.
 const SPACING_MM: f64 = 2.0;
 
-/// Distance of the spins, radians.
+/// Spacing of the yaw angles, radians.
 const SPIN_RAD: f64 = 0.3;
 
-/// Depths, as parts of the deepest.
+/// Depths, as fractions of the largest depth.
 const DEPTHS: [f64; 6] = [0.04, 0.1, 0.2, 0.36, 0.6, 0.9];
 
-/// How much stronger or weaker than a press of the table a press may be that begins there.
+/// Smallest and largest strength of a starting press relative to the press of the table from which
+/// it is made.
 const STRENGTHS: [f32; 2] = [0.5, 2.0];
 
-/// Readings grow with this power of depth, roughly: between those of a flat punch and of a ball (Hertz).
+/// Readings grow roughly with this power of depth: it lies between those of a flat punch and of a
+/// ball (Hertz).
 const POWER: f64 = 1.3;
 
 /// Presses closer than this are one start, mm.
 const APART_MM: f64 = 4.0;
 
-/// Most numbers of a table: 1 GB of memory.
+/// Largest number of values of a table: 1 GB of memory.
 const MOST_NUMBERS: f64 = 2.5e8;
 
-/// Readings are filled up with zeros to multiples of so many.
+/// Readings are padded with zeros to a multiple of this number.
 pub(crate) const LANES: usize = 8;
 
-/// What is read of one shape.
+/// The readings of one shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Starts {
     presses: Vec<[f64; N]>,
-    /// `[n_presses][n_padded]`
+    /// Readings, kPa; `[n_presses][n_padded]`.
     readings_kpa: Vec<f32>,
     n_padded: usize,
     turn_rad: Option<f64>,
@@ -100,13 +103,14 @@ impl Starts {
         })
     }
 
-    /// Presses in the table.
+    /// Number of presses in the table.
     pub(crate) fn len(&self) -> usize {
         self.presses.len()
     }
 
-    /// The best presses that are apart from each other, best first, for weighted readings: `readings * root weights`, and root weights,
-    /// `[n_padded]`. `costs` is scratch.
+    /// The best presses that are apart from each other, best first. `weighted` has the readings
+    /// times the square roots of their weights, and `roots` these square roots; both `[n_padded]`.
+    /// `costs` is scratch memory.
     pub(crate) fn best(
         &self,
         weighted: &[f32],
@@ -142,7 +146,8 @@ impl Starts {
         }
     }
 
-    /// Whether two presses are different starts. Spins count by the way that a corner 5 mm from the middle goes.
+    /// Whether two presses are different starts. A difference of yaw counts by the path of a corner
+    /// 5 mm from the centre.
     pub(crate) fn is_apart(&self, a: &[f64; N], b: &[f64; N]) -> bool {
         let turn = self
             .turn_rad
@@ -151,7 +156,7 @@ impl Starts {
     }
 }
 
-/// Products of the weighted readings with the weighted row, and of the row with itself.
+/// Product of the weighted readings with the weighted row, and of the weighted row with itself.
 #[inline(always)]
 fn products(weighted: &[f32], roots: &[f32], row: &[f32]) -> (f32, f32) {
     let (mut products, mut squares) = ([0.0; LANES], [0.0; LANES]);
@@ -172,7 +177,8 @@ fn strength(product: f32, own: f32) -> f32 {
     (product / own.max(f32::MIN_POSITIVE)).clamp(STRENGTHS[0], STRENGTHS[1])
 }
 
-/// Numbers from the least to the largest, about so far apart; one in the middle if both are the same.
+/// Values from the smallest to the largest, about this far apart; one in the middle if both are the
+/// same.
 fn evenly([low, high]: [f64; 2], spacing: f64) -> Vec<f64> {
     let n = ((high - low) / spacing).round();
     if n < 1.0 {

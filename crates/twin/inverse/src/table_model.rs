@@ -1,4 +1,5 @@
-//! Readings known at the nodes of a grid over place and depth, as a model of contacts: of a trained twin, or measured.
+//! Readings at the nodes of a grid over location and depth, as a forward model of contacts: from a
+//! trained twin, or measured.
 
 use std::sync::Arc;
 
@@ -6,22 +7,25 @@ use glam::DVec2;
 
 use crate::model::{ContactModel, Domain, Press};
 
-/// What one shape reads at the nodes of a grid. An axis of one node is not looked for.
+/// Readings under one shape at the nodes of a grid. A coordinate whose axis has one node is not
+/// estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadingTable {
-    /// The least node, and the distance of the nodes, along x, y and depth, mm.
+    /// First node along x, y and depth, mm.
     pub first_mm: [f64; 3],
     /// Distance of the nodes along x, y and depth, mm.
     pub step_mm: [f64; 3],
-    /// Nodes along x, y and depth.
+    /// Number of nodes along x, y and depth.
     pub n: [usize; 3],
-    /// Readings at each node, kPa, depth by depth, row by row along x. `[n_depth * n_y * n_x][n_readings]`
+    /// Readings at each node, kPa, depth by depth and row by row along x; `[n_depth * n_y *
+    /// n_x][n_readings]`.
     pub readings_kpa: Vec<Vec<f64>>,
-    /// Force at each node, N. `[n_depth * n_y * n_x]`
+    /// Force at each node, N; `[n_depth * n_y * n_x]`.
     pub force_n: Vec<f64>,
 }
 
-/// Tables of known shapes. Between nodes readings are cubic (Catmull and Rom), before the first and behind the last they stay as they are there.
+/// Tables of known shapes. Interpolation between nodes is cubic (Catmull and Rom). Before the first
+/// node and behind the last one, readings are constant.
 #[derive(Clone, Debug)]
 pub struct TableModel {
     tables: Arc<Vec<ReadingTable>>,
@@ -29,10 +33,11 @@ pub struct TableModel {
 }
 
 impl TableModel {
-    /// A table for each shape.
+    /// A model with one table for each shape.
     ///
     /// # Panics
-    /// Tables whose lists have other lengths than there are nodes, or that differ in their number of readings.
+    /// If the lists of a table do not have one value for each node, or if tables differ in their
+    /// number of readings.
     #[must_use]
     pub fn new(tables: Vec<ReadingTable>) -> Self {
         let n_readings = tables
@@ -111,7 +116,8 @@ impl ContactModel for TableModel {
     }
 }
 
-/// The four nodes around a position, in steps, and their shares. Beyond an end the end's node stands.
+/// The four nodes around a position, in steps, and their weights. Beyond an end, the node at the
+/// end is repeated.
 fn nodes(position: f64, n: usize) -> [(usize, f64); 4] {
     if n == 1 {
         return [(0, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)];

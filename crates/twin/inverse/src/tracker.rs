@@ -1,4 +1,4 @@
-//! One sensor, frame by frame.
+//! Contact estimation for one sensor, frame by frame.
 
 use glam::DVec2;
 use twintac_config::{Problem, Ranges};
@@ -11,52 +11,57 @@ use crate::matrix::form;
 use crate::model::{ContactModel, N};
 use crate::starts::LANES;
 
-/// The largest reading that can be, kPa: that of a kilometre of granite is a fortieth of it.
+/// The largest reading that is accepted, kPa: forty times the pressure under a kilometre of
+/// granite.
 pub const LARGEST_READING_KPA: f64 = 1e6;
 
-/// The longest time between two frames, s.
+/// The longest time between two frames that is accepted, s.
 const LONGEST_S: f64 = 1e9;
 
-/// Hypotheses whose readings are less probable than the best's by e to this power wait for their shape's turn.
+/// Hypotheses that are less probable than the best by a factor of e to this power are updated only
+/// in their shape's turn.
 const IMPROBABLE: f64 = 10.0;
 
-/// A hypothesis of a shape gives way to a new one if it is less probable than the shape's best by e to this power.
+/// A hypothesis of a shape is replaced by a new one if it is less probable than the shape's best by
+/// a factor of e to this power.
 const WORSE: f64 = 3.0;
 
-/// Frames that a new hypothesis has before it is judged.
+/// Number of frames of a new hypothesis before it counts.
 const ON_TRIAL: u32 = 6;
 
-/// By how much a new hypothesis may fit a frame better by chance, weighted squares: it is not yet bound by the frames before.
+/// A new hypothesis may fit a frame better by chance by this much, in weighted squares, because
+/// earlier frames do not bind it yet.
 const BY_CHANCE: f64 = 10.0;
 
-/// Presses of a shape's table that are tried in turn.
+/// Number of presses of a shape's table that are tried in turn.
 const N_CANDIDATES: usize = 8;
 
-/// Two hypotheses of one shape closer than this are one: mm, mm, mm, radians.
+/// Two hypotheses of one shape that differ by less than this are the same: mm, mm, mm, radians.
 const SAME: [f64; N] = [0.4, 0.4, 0.15, 0.1];
 
-/// Follows the contact of one sensor. Frames allocate nothing.
+/// Follows the contact of one sensor. Updates allocate no memory.
 ///
-/// A few presses of each shape are followed at once, because readings of few taxels fit several. In each frame the table of one shape's readings is
-/// searched for another press that fits, which is tried instead of one that does not.
+/// A few presses of each shape are followed at once, because several presses fit the readings of
+/// few taxels. In each frame, the table of one shape's readings is searched for another press that
+/// fits, which replaces one that does not.
 #[derive(Clone, Debug)]
 pub struct Tracker<M> {
     inverse: Inverse<M>,
-    /// `[n_shapes * n_starts]`
+    /// The hypotheses of each shape; `[n_shapes * n_starts]`.
     hypotheses: Vec<Hypothesis>,
     is_touched: bool,
-    /// The shape whose turn it is.
+    /// The shape whose table is searched in this frame.
     turn: usize,
     /// Which of its candidates is tried.
     candidate: usize,
-    /// Frames of this contact, less what was forgotten.
+    /// Number of frames of this contact, minus what was forgotten.
     n_frames: f64,
     contact: Contact,
     readings_kpa: Vec<f32>,
     weights: Vec<f64>,
-    /// Weights of a frame by itself.
+    /// Weights for a single frame, without correlation; `[n_readings]`.
     alone: Vec<f64>,
-    /// For the search: `[n_padded]`, and a number for each press of a table.
+    /// Scratch memory of the search: `[n_padded]`, and one value for each press of a table.
     weighted: Vec<f32>,
     roots: Vec<f32>,
     costs: Vec<f32>,
@@ -64,7 +69,7 @@ pub struct Tracker<M> {
 }
 
 impl<M: ContactModel> Inverse<M> {
-    /// A tracker of a sensor that nothing has touched yet.
+    /// A tracker for a sensor that nothing has touched yet.
     #[must_use]
     pub fn start(&self) -> Tracker<M> {
         Tracker::new(self.clone())
@@ -98,13 +103,15 @@ impl<M: ContactModel> Tracker<M> {
         }
     }
 
-    /// Takes a frame; returns what touches, or nothing if the readings are within noise. After an error, all is as before the frame.
+    /// Takes a frame and returns the contact, or `None` if the readings are within noise. After an
+    /// error, the tracker is as it was before the frame.
     ///
-    /// - `since_previous_s`: time since the frame before, s, touched or not.
-    /// - `readings_kpa`: above the untouched sensor, kPa. `[n_readings]`
+    /// - `since_previous_s`: time since the previous frame, s, with or without contact.
+    /// - `readings_kpa`: readings above the sensor without contact, kPa; `[n_readings]`.
     ///
     /// # Errors
-    /// [`InverseError::Frame`]: another number of readings; a reading that is not finite or beyond [`LARGEST_READING_KPA`]; a time that is not finite or negative.
+    /// [`InverseError::Frame`]: a wrong number of readings; a reading that is not finite or beyond
+    /// [`LARGEST_READING_KPA`]; a time that is not finite or negative.
     pub fn update(
         &mut self,
         since_previous_s: f64,
@@ -178,7 +185,8 @@ impl<M: ContactModel> Tracker<M> {
         }
     }
 
-    /// Begins with the best presses of a shape; once it is touched, tries one more.
+    /// At the start of a contact, begins with the best presses of a shape. Later, tries one more
+    /// press.
     fn search(&mut self, shape: usize) {
         let n_starts = self.inverse.settings.n_starts;
         let Prepared { prior, starts } = &self.inverse.shapes[shape];
@@ -218,7 +226,7 @@ impl<M: ContactModel> Tracker<M> {
         }
     }
 
-    /// Takes what is probable, on trial, or has its turn through the frame.
+    /// Updates all hypotheses that are probable, on trial, or of the shape whose turn it is.
     fn follow(&mut self, since_s: f64) {
         let settings = self.inverse.settings;
         let frame = Weighed {
@@ -247,7 +255,7 @@ impl<M: ContactModel> Tracker<M> {
             .iter_mut()
             .filter(|hypothesis| hypothesis.is_judged())
         {
-            // What waits keeps its distance.
+            // A hypothesis that was not updated keeps its distance to the best.
             let own = if hypothesis.gain.is_nan() {
                 gain
             } else {
@@ -263,7 +271,7 @@ impl<M: ContactModel> Tracker<M> {
         }
     }
 
-    /// What the hypotheses come to.
+    /// Computes the contact from the hypotheses.
     fn conclude(&mut self) {
         let settings = &self.inverse.settings;
         let best = best_score(&self.hypotheses);
@@ -289,7 +297,7 @@ impl<M: ContactModel> Tracker<M> {
         let Some(told) = own.iter().max_by(|a, b| weight(a).total_cmp(&weight(b))) else {
             return;
         };
-        // About what is told, all presses of the shape that may be.
+        // The covariance is taken about the most probable press, over all hypotheses of its shape.
         let of_shape: f64 = own.iter().map(weight).sum();
         contact.covariance = [[0.0; N]; N];
         let mut force_square = (settings.force_part * told.force_n).powi(2);
@@ -331,8 +339,9 @@ fn best_score(hypotheses: &[Hypothesis]) -> f64 {
     judged.map(Hypothesis::score).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Ends trials: what fits this frame clearly better than the shape's best counts as if it had fitted all frames of the contact so,
-/// but is not believed more than anything that did.
+/// Ends trials. A hypothesis that fits this frame clearly better than the shape's best counts as if
+/// it had fitted all frames of the contact that well, but it does not become more probable than any
+/// hypothesis that did fit them.
 fn judge(own: &mut [Hypothesis], n_frames: f64, most: f64) {
     let judged = own
         .iter()
@@ -354,7 +363,7 @@ fn judge(own: &mut [Hypothesis], n_frames: f64, most: f64) {
     }
 }
 
-/// Of hypotheses that have come to the same press, keeps the most probable.
+/// Of hypotheses that have arrived at the same press, keeps the most probable.
 fn merge(own: &mut [Hypothesis], prior: &Prior) {
     for first in 0..own.len() {
         for second in 0..own.len() {

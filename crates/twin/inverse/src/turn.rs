@@ -1,10 +1,11 @@
-//! Turns after which shapes look the same.
+//! Rotations after which shapes look the same.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use twintac_shape::Shape;
 
-/// The least turn about the vertical after which a shape looks the same, radians; `None` for a round one.
+/// The smallest rotation about the vertical after which a shape looks the same, radians; `None` for
+/// a round shape.
 pub(crate) fn turn_rad(shape: &Shape) -> Option<f64> {
     match shape {
         Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Ring { .. } => None,
@@ -18,7 +19,7 @@ pub(crate) fn turn_rad(shape: &Shape) -> Option<f64> {
     }
 }
 
-/// The same turn between minus and plus half of what makes no difference.
+/// An equivalent rotation between minus and plus half of the symmetry angle `turn_rad`.
 pub(crate) fn nearest(rad: f64, turn_rad: f64) -> f64 {
     rad - turn_rad * (rad / turn_rad).round()
 }

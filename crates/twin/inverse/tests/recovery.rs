@@ -1,4 +1,4 @@
-//! What the fast gel reads leads back to what touched it.
+//! Readings of the surrogate lead back to the contact that caused them.
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
@@ -18,7 +18,7 @@ use twintac_shape::{Shape, Surfaces};
 
 const EDGE_MM: f64 = 0.8;
 
-/// A model that is the truth: what is left is noise.
+/// Settings for a forward model without error: all residuals are noise.
 fn settings() -> InverseSettings {
     InverseSettings {
         noise_kpa: 0.1,
@@ -53,7 +53,7 @@ static KNOWN: LazyLock<Inverse<FastModel>> = LazyLock::new(|| {
     Inverse::of_fast_gel(&gel, &shapes(), &Surfaces::new(), settings()).unwrap()
 });
 
-/// What is read of a press, kPa, and its force, N.
+/// The readings of a press, kPa, and its force, N.
 fn read(shape: usize, press: &Press) -> ([f64; 8], f64) {
     let mut readings_kpa = [0.0; 8];
     let force_n = KNOWN.model().clone().read(shape, press, &mut readings_kpa);
@@ -64,7 +64,7 @@ fn noisy(readings_kpa: [f64; 8], random: &mut impl Rng) -> [f64; 8] {
     readings_kpa.map(|reading_kpa| reading_kpa + normal(random, 0.1))
 }
 
-/// A press over the taxels.
+/// A random press over the taxels.
 fn drawn(random: &mut impl Rng) -> Press {
     Press {
         place_mm: DVec2::new(random.random_range(-10.0..10.0), random.random_range(-4.0..4.0)),
@@ -90,7 +90,7 @@ fn place_depth_force_and_shape_are_found() {
             .unwrap();
         assert!((contact.shape_probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         if contact.shape != shape {
-            // A bar across the press reads nearly as a ball does.
+            // A bar across the sensor gives nearly the readings of a ball.
             continue;
         }
         n_told += 1;
@@ -116,7 +116,8 @@ fn place_depth_force_and_shape_are_found() {
     }
     place_errors_mm.sort_by(f64::total_cmp);
     assert!(place_errors_mm[n_told / 2] < 0.15, "{place_errors_mm:?}");
-    // A bar near an edge may be turned and moved together and read nearly the same: deviations say too little there.
+    // A bar near an edge that is rotated and moved together gives nearly the same readings, and the
+    // estimated deviations are too small there.
     assert!(
         n_within + 3 >= n_told,
         "{n_within} of {n_told} within four deviations"
@@ -127,7 +128,8 @@ fn place_depth_force_and_shape_are_found() {
 #[test]
 fn errors_are_as_large_as_is_said() {
     let gel = FastGel::phystac().unwrap();
-    // Each frame by itself, to its end: errors of frames are independent.
+    // Each frame is solved by itself until it converges, so that the errors of frames are
+    // independent.
     let alone = InverseSettings {
         correlated_s: 1e-3,
         n_steps: 8,
@@ -200,7 +202,7 @@ fn a_contact_that_slides_is_followed() {
             .update(0.002, &noisy(read(0, &press).0, random))
             .unwrap()
             .unwrap();
-        // At first it may be taken for another shape, elsewhere.
+        // At first it may be taken for another shape at another location.
         if frame > 300 {
             farthest_mm = farthest_mm.max(contact.place_mm.distance(press.place_mm));
         }
@@ -304,7 +306,8 @@ fn what_cannot_be_is_an_error() {
     }
 }
 
-/// Every number of the settings, one after the other, at what nobody means: accepted with a meaning, or refused by its name.
+/// Every setting in turn is set to absurd values. Each is either accepted with a meaning, or
+/// refused with its name.
 #[test]
 fn every_setting_has_a_range() {
     let accepts_zero = [

@@ -1,4 +1,4 @@
-//! What a page shows: results of the twin, as they are.
+//! The data of a page: results of a twin as they are.
 
 use std::collections::BTreeSet;
 
@@ -7,32 +7,32 @@ use twintac_depth_table::DepthTable;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
-/// All that stands on the page of a twin.
+/// All data of the page of a twin.
 #[derive(Clone, Debug)]
 pub struct TwinReport<'a> {
     /// The sensor.
     pub sensor: &'a Sensor,
-    /// Where the sensor's readings come from.
+    /// Provenance of the sensor's readings.
     pub provenance: Provenance,
-    /// The twin on presses that it never saw.
+    /// Evaluation of the twin on held-out presses.
     pub evaluation: &'a Evaluation,
-    /// How sure the twin is on them, and whether it is right, if it knows.
+    /// The twin's uncertainty on these presses and its coverage, if the twin has an uncertainty.
     pub certainty: Option<&'a CertaintyScore>,
-    /// How well the presses themselves repeat, if some repeat others.
+    /// Repeatability of the presses, if some repeat others.
     pub repeatability: Option<&'a Repeatability>,
-    /// Taxels left out of the headline, by index.
+    /// Indices of taxels that are left out of the headline.
     pub left_out: &'a BTreeSet<usize>,
     /// All presses, measured and simulated.
     pub presses: &'a [PairedPress],
-    /// Which of them the twin never saw.
+    /// Indices of the held-out presses among them.
     pub test: &'a [usize],
     /// The twins that were compared.
     pub variants: Vec<TrainedVariant<'a>>,
-    /// What was found about the bench.
+    /// The calibration of the test setup.
     pub bench: &'a BenchEstimate,
-    /// The simulated tables.
+    /// The simulated tables over depth.
     pub tables: &'a [DepthTable],
-    /// How the page came to be.
+    /// How the page was made.
     pub making: Making,
 }
 
@@ -43,20 +43,20 @@ pub struct TrainedVariant<'a> {
     pub variant: Variant,
     /// Whether it is the twin of this page.
     pub is_chosen: bool,
-    /// Its errors on validation presses, by which the choice was made.
+    /// Its errors on validation presses, by which the twin was chosen.
     pub validation: &'a Score,
     /// Its errors on test presses.
     pub test: &'a Score,
-    /// Its losses.
+    /// Its losses by epoch.
     pub history: &'a [Epoch],
 }
 
-/// How a page came to be.
+/// How a page was made.
 #[derive(Clone, Debug, Default)]
 pub struct Making {
     /// The command line.
     pub command: String,
-    /// Where the presses come from.
+    /// Source of the presses.
     pub source: String,
     /// The seed of all random streams.
     pub seed: u64,

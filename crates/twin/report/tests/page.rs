@@ -1,4 +1,5 @@
-//! The page as a reader gets it: safe, self-contained, the same every time, and silent about what is absent.
+//! Properties of the page: safe, self-contained, reproducible, and without sections for absent
+//! data.
 
 #[path = "../examples/invented_report/invented.rs"]
 mod invented;

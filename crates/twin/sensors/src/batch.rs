@@ -1,4 +1,4 @@
-//! Sensors from what touches to what is read.
+//! Many sensors, from bodies and poses to readings.
 
 use digitac::Twin;
 use rayon::prelude::*;
@@ -9,18 +9,17 @@ use crate::chunk::{Chunk, Moment};
 use crate::sensor::Sensor;
 use crate::state::SensorState;
 
-/// Most readings of all sensors of a batch, which take about a gigabyte.
+/// Largest number of readings of all sensors of a batch; they take about a gigabyte.
 const MOST_READINGS: usize = 10_000_000;
 
-/// Most sensors of a batch, each with so many taxels.
+/// Largest number of sensors of a batch, each with this number of taxels.
 #[must_use]
 pub fn most_sensors(n_taxels: usize) -> usize {
     MOST_READINGS / n_taxels.max(8)
 }
 
-/// Many sensors of one kind, with the memory that steps need: it is kept from step to step. What
-/// touches them is read and not held: [`CoupledBatch`](crate::CoupledBatch)
-/// has friction and loss.
+/// Many sensors of one kind, with the memory that steps need, which is kept from step to step.
+/// Bodies are felt without friction and loss; [`CoupledBatch`](crate::CoupledBatch) has both.
 #[derive(Clone, Debug)]
 pub struct SensorBatch {
     imperfection: Imperfection,
@@ -32,13 +31,15 @@ pub struct SensorBatch {
 }
 
 impl SensorBatch {
-    /// So many sensors whose gels have rested, for so many threads. Sensor `n` is the same under the same seed, whatever the other sensors are and however many
-    /// threads there are.
+    /// Sensors with relaxed gels, distributed over threads. Sensor `n` is the same for the same
+    /// seed, whatever the other sensors are and however many threads there are.
     ///
-    /// With a twin, readings are those of its barometers; without, the pressures at the ports.
+    /// With a twin, readings are those of its barometers; without, they are the pressures at the
+    /// ports. Both include the sensors' variation.
     ///
     /// # Panics
-    /// A twin of another number of taxels than the gel has; more sensors than [`most_sensors`].
+    /// If the twin has another number of taxels than the gel, or if there are more sensors than
+    /// [`most_sensors`].
     #[must_use]
     pub fn new(
         gel: &FastGel,
@@ -87,7 +88,8 @@ impl SensorBatch {
         self.n_taxels
     }
 
-    /// The sensors of each thread as a batch of its own, for a caller that steps them on threads of its own. They go on as they would have; what they share is not copied.
+    /// Divides the batch into one batch for each thread, for a caller that steps them on its own
+    /// threads. The sensors continue as they would have; shared data are not copied.
     #[must_use]
     pub fn into_parts(self) -> Vec<Self> {
         let part = |chunk: Chunk| Self {
@@ -100,16 +102,19 @@ impl SensorBatch {
         self.chunks.into_iter().map(part).collect()
     }
 
-    /// One more moment of every sensor.
+    /// One step of every sensor.
     ///
     /// - `since_previous_s`: time since the last step, s, not negative.
-    /// - `bodies`, `touches`, `ends`: what touches whom, as [`FastBatch::read`] takes it. Poses are in the frame in which the sensor should be.
-    /// - `readings_kpa`: is written; what the bus of each sensor delivered last, kPa. `[n_sensors * n_taxels]`
-    /// - `wrench`: is written; force on each gel, N, and torque about the top of its middle, N mm, in the frame of the sensor where it is.
-    ///   `[n_sensors]`.
+    /// - `bodies`, `touches`, `ends`: the bodies at each sensor, as
+    ///   [`FastBatch::read`](twintac_fast::FastBatch::read) takes them. Poses are in the frame of
+    ///   the sensor as it is described.
+    /// - `readings_kpa`: output; the last frame that the bus of each sensor delivered, kPa.
+    ///   `[n_sensors * n_taxels]`
+    /// - `wrench`: output; force on each gel, N, and torque about the top of its middle, N mm, in
+    ///   the actual frame of the sensor. `[n_sensors]`
     ///
     /// # Panics
-    /// Those of [`FastBatch::read`].
+    /// Those of [`FastBatch::read`](twintac_fast::FastBatch::read).
     pub fn step(
         &mut self,
         since_previous_s: f64,
@@ -136,7 +141,7 @@ impl SensorBatch {
         );
     }
 
-    /// Lets every thread work on its sensors, of which the first has this number.
+    /// Calls `work` for the sensors of each thread, with the number of the first of them.
     pub(crate) fn each(
         &mut self,
         readings_kpa: &mut [f32],
@@ -145,7 +150,7 @@ impl SensorBatch {
     ) {
         let (imperfection, of_chunk) = (&self.imperfection, self.of_chunk);
         if let [chunk] = self.chunks.as_mut_slice() {
-            // Nobody has to be woken.
+            // A single thread does not need the thread pool.
             work(imperfection, chunk, 0, readings_kpa, wrench);
             return;
         }
@@ -157,7 +162,7 @@ impl SensorBatch {
         });
     }
 
-    /// Panics at slices of other lengths.
+    /// Panics if a slice has another length.
     pub(crate) fn check(&self, ends: &[usize], n_touches: usize, readings_kpa: &[f32], wrench: &[[f32; 6]]) {
         let n_sensors = self.n_sensors();
         assert_eq!(
@@ -174,13 +179,14 @@ impl SensorBatch {
         );
     }
 
-    /// One more moment in which everything stays where it was in the last step, as a step with the same touches would have it: gels are not read anew.
-    /// Sensors that were replaced since then have to be stepped first.
+    /// One step in which everything stays where it was in the last step. The result is the one of a
+    /// step with the same touches, but the gels are not evaluated again. Sensors that were replaced
+    /// since the last step have to be stepped first.
     ///
-    /// - `since_previous_s`, `readings_kpa`: as [`Self::step`] takes them.
+    /// - `since_previous_s`, `readings_kpa`: as in [`Self::step`].
     ///
     /// # Panics
-    /// Readings of another length.
+    /// If the slice of readings has another length.
     pub fn stay(&mut self, since_previous_s: f64, readings_kpa: &mut [f32]) {
         assert_eq!(
             readings_kpa.len(),
@@ -189,7 +195,7 @@ impl SensorBatch {
         );
         let imperfection = &self.imperfection;
         if let [chunk] = self.chunks.as_mut_slice() {
-            // Nobody has to be woken.
+            // A single thread does not need the thread pool.
             chunk.sense(imperfection, since_previous_s, readings_kpa);
             return;
         }
@@ -198,47 +204,55 @@ impl SensorBatch {
         work.for_each(|(chunk, readings_kpa)| chunk.sense(imperfection, since_previous_s, readings_kpa));
     }
 
-    /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.
+    /// What sensors without variation would have delivered in the last step, kPa: the pressures at
+    /// the ports, or the readings of the twin. `[n_sensors * n_taxels]`
+    pub fn ground_truth_kpa(&self) -> impl Iterator<Item = f32> + '_ {
+        self.chunks.iter().flat_map(Chunk::ground_truth_kpa)
+    }
+
+    /// Resets the gel and the read-out of one sensor to rest. Its deviations stay.
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If there is no such sensor.
     pub fn rest(&mut self, sensor: usize) {
         let (chunk, own) = self.place(sensor);
         self.chunks[chunk].rest(own);
     }
 
-    /// Puts another sensor in the place of one, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart:
-    /// those below the number of sensors are the first ones.
+    /// Replaces a sensor by another one at rest, whose deviations are drawn anew. `number`
+    /// identifies the new sensor: numbers below the number of sensors give the first sensors of the
+    /// batch.
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If there is no such sensor.
     pub fn replace(&mut self, sensor: usize, number: u64) {
         let drawn = Sensor::draw(&self.imperfection, self.n_taxels, self.seed, number);
         let (chunk, own) = self.place(sensor);
         self.chunks[chunk].replace(own, drawn);
     }
 
-    /// What a sensor is and remembers, counted from 0: set back, it goes on to the same bits.
+    /// The state of a sensor, counted from 0. A sensor that is set back to it continues with the
+    /// same bits.
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If there is no such sensor.
     #[must_use]
     pub fn state(&self, sensor: usize) -> SensorState {
         let (chunk, own) = self.place(sensor);
         self.chunks[chunk].state(own)
     }
 
-    /// Lets a sensor go on from a state, of its own or of another one of its kind.
+    /// Sets a sensor to a state, its own or that of another sensor of its kind.
     ///
     /// # Panics
-    /// A sensor that is not there, a state of another number of taxels, or of sensors with a twin
-    /// where these have none.
+    /// If there is no such sensor, or if the state has another number of taxels, or belongs to a
+    /// sensor with a twin where this batch has none, or the reverse.
     pub fn set_state(&mut self, sensor: usize, state: &SensorState) {
         let (chunk, own) = self.place(sensor);
         self.chunks[chunk].set_state(own, state);
     }
 
-    /// In which chunk a sensor is, and its number there.
+    /// The chunk of a sensor, and its number in the chunk.
     fn place(&self, sensor: usize) -> (usize, usize) {
         (sensor / self.of_chunk, sensor % self.of_chunk)
     }

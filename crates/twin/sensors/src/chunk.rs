@@ -1,4 +1,4 @@
-//! Sensors that one thread steps.
+//! The sensors of one thread.
 
 use digitac::{Twin, TwinState};
 use glam::{DQuat, DVec3, Vec3};
@@ -10,30 +10,33 @@ use crate::sensor::Sensor;
 use crate::state::SensorState;
 use crate::{Coupling, HeldTouch, Imperfection};
 
-/// Sensors that one thread steps.
+/// The sensors of one thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Chunk {
     pub(crate) sensors: Vec<Sensor>,
-    /// What each remembers of what touches it, where gels hold it. `[n_sensors]`
+    /// What the gel of each sensor holds, in a [`CoupledBatch`](crate::CoupledBatch). `[n_sensors]`
     holds: Vec<Holds>,
     holding: Holding,
     gel: FastReader,
-    /// What touches, as the sensors that are not where they should be feel it.
+    /// The touches in the actual frames of the sensors.
     touches: Vec<Touch>,
     /// Where each sensor's touches end. `[n_sensors]`
     ends: Vec<usize>,
     twin: Option<TwinState>,
-    /// What the gels show, in single and in double precision, and what perfect sensors would read
-    /// of it. `[n_sensors * n_taxels]`
+    /// Pressures of the gels in single and in double precision, and readings of ideal sensors, kPa.
+    /// `[n_sensors * n_taxels]`
     pressure_kpa: Vec<f32>,
     seen: Vec<f64>,
     true_kpa: Vec<f64>,
-    /// Of each touch, in the frame in which its sensor should be. `[n_touches]`, where gels hold
-    /// what touches.
+    /// The wrench of each touch, in the frame of its sensor as described; in a
+    /// [`CoupledBatch`](crate::CoupledBatch) only. `[n_touches]`
     pub(crate) wrench_of_touch: Vec<[f32; 6]>,
+    /// How fast each touch slips over its gel, mm/s, along x and y of the gel; in a
+    /// [`CoupledBatch`](crate::CoupledBatch) only. `[n_touches]`
+    pub(crate) slip_of_touch: Vec<[f32; 2]>,
 }
 
-/// What happens in a step, to all sensors.
+/// Inputs of a step, for all sensors.
 pub(crate) struct Moment<'a, T> {
     pub(crate) since_previous_s: f64,
     pub(crate) bodies: &'a [Body],
@@ -49,7 +52,7 @@ impl<T> Moment<'_, T> {
 }
 
 impl Chunk {
-    /// Sensors whose gels have rested.
+    /// Sensors with relaxed gels.
     pub(crate) fn new(sensors: Vec<Sensor>, gel: FastReader, twin: Option<&Twin>) -> Self {
         let n = sensors.len();
         let n_readings = n * gel.n_taxels();
@@ -67,17 +70,18 @@ impl Chunk {
             seen: vec![0.0; n_readings],
             true_kpa: vec![0.0; n_readings],
             wrench_of_touch: Vec::new(),
+            slip_of_touch: Vec::new(),
             sensors,
             gel,
         }
     }
 
-    /// The gel of all of them.
+    /// The surrogate of their gel.
     pub(crate) fn gel(&self) -> &FastReader {
         &self.gel
     }
 
-    /// What the gels do under what touches them; the first sensor has this number.
+    /// Evaluates the gels; `first` is the number of the first sensor.
     pub(crate) fn read<T: Copy + Into<Touch>>(
         &mut self,
         moment: &Moment<T>,
@@ -90,7 +94,7 @@ impl Chunk {
             .read_many(moment.bodies, touches, ends, &mut self.pressure_kpa, wrench);
     }
 
-    /// What sensors deliver of what their gels show.
+    /// Computes the readings from the pressures of the gels.
     pub(crate) fn sense(
         &mut self,
         imperfection: &Imperfection,
@@ -116,7 +120,18 @@ impl Chunk {
         }
     }
 
-    /// Friction and loss of each touch that was read; the first sensor has this number.
+    /// What perfect sensors would have delivered in the last step, kPa. `[n_sensors * n_taxels]`
+    pub(crate) fn ground_truth_kpa(&self) -> impl Iterator<Item = f32> + '_ {
+        let of_twin = self
+            .twin
+            .is_some()
+            .then(|| self.true_kpa.iter().map(|kpa| *kpa as f32));
+        let of_gel = self.twin.is_none().then(|| self.pressure_kpa.iter().copied());
+        of_twin.into_iter().flatten().chain(of_gel.into_iter().flatten())
+    }
+
+    /// Adds friction and loss to each touch after [`Self::read`]; `first` is the number of the
+    /// first sensor.
     pub(crate) fn hold(
         &mut self,
         moment: &Moment<HeldTouch>,
@@ -126,6 +141,8 @@ impl Chunk {
     ) {
         self.wrench_of_touch.clear();
         self.wrench_of_touch.resize(self.touches.len(), [0.0; 6]);
+        self.slip_of_touch.clear();
+        self.slip_of_touch.resize(self.touches.len(), [0.0; 2]);
         let n_taxels = self.gel.n_taxels().max(1);
         let pressures = self.pressure_kpa.chunks_exact_mut(n_taxels);
         let sensors = self
@@ -140,6 +157,7 @@ impl Chunk {
             let own = start..*end;
             start = *end;
             let apart = &mut self.wrench_of_touch[own.clone()];
+            let slip = &mut self.slip_of_touch[own.clone()];
             let ids = moment.touches[offset + own.start..].iter().map(|held| held.id);
             holds.step(
                 coupling,
@@ -147,7 +165,7 @@ impl Chunk {
                 (&mut self.gel, &mut self.holding),
                 (moment.bodies, &self.touches[own], ids),
                 pressure_kpa,
-                (wrench, apart),
+                (wrench, &mut *apart, slip),
             );
             let described_from_actual = sensor.actual_from_described.rotation.inverse().as_quat();
             for wrench in apart {
@@ -158,7 +176,7 @@ impl Chunk {
         }
     }
 
-    /// What touches, seen from where the sensors are.
+    /// Transforms the touches to the actual frames of the sensors.
     fn mount<T: Copy + Into<Touch>>(&mut self, moment: &Moment<T>, first: usize) {
         self.touches.clear();
         self.ends.clear();
@@ -181,7 +199,7 @@ impl Chunk {
         }
     }
 
-    /// Lets the gel of one sensor rest.
+    /// Resets one sensor to rest.
     pub(crate) fn rest(&mut self, own: usize) {
         self.sensors[own].rest();
         self.holds[own] = Holds::default();
@@ -190,13 +208,13 @@ impl Chunk {
         }
     }
 
-    /// Puts another sensor, which has rested, in the place of one.
+    /// Replaces one sensor by another one at rest.
     pub(crate) fn replace(&mut self, own: usize, sensor: Sensor) {
         self.sensors[own] = sensor;
         self.rest(own);
     }
 
-    /// What one sensor is and remembers.
+    /// The state of one sensor.
     pub(crate) fn state(&self, own: usize) -> SensorState {
         SensorState {
             sensor: self.sensors[own].clone(),
@@ -206,7 +224,7 @@ impl Chunk {
         }
     }
 
-    /// Lets one sensor go on from a state.
+    /// Sets one sensor to a state.
     pub(crate) fn set_state(&mut self, own: usize, state: &SensorState) {
         self.sensors[own].clone_from(&state.sensor);
         self.holds[own].clone_from(&state.holds);

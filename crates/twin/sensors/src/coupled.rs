@@ -1,4 +1,4 @@
-//! Sensors whose gels hold what touches them.
+//! Sensors with friction and loss between their gels and bodies.
 
 use thiserror::Error;
 use twintac_fast::{Body, FastGelMismatch};
@@ -8,26 +8,26 @@ use crate::chunk::Moment;
 use crate::state::SensorState;
 use crate::{Coupling, HeldTouch, TouchId};
 
-/// Many sensors of one kind whose gels hold what touches them, with friction and loss. What each
-/// remembers of a thing is kept under the thing's [`TouchId`].
+/// Many sensors of one kind with friction and loss between their gels and the things that touch
+/// them. What a gel remembers of a thing is stored under the thing's [`TouchId`].
 #[derive(Clone, Debug)]
 pub struct CoupledBatch {
     batch: SensorBatch,
     coupling: Coupling,
 }
 
-/// One thing twice on one sensor.
+/// The error for one thing that touches a sensor twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("sensor {sensor} is touched twice by the thing {}: give each thing a number of its own", .id.0)]
+#[error("sensor {sensor} is touched twice by the body {}: give each body a number of its own", .id.0)]
 pub struct TouchedTwice {
     /// Number of the sensor.
     pub sensor: usize,
-    /// Which thing.
+    /// The thing.
     pub id: TouchId,
 }
 
 impl SensorBatch {
-    /// The same sensors, which hold what touches them, with friction and loss.
+    /// The same sensors, with friction and loss.
     ///
     /// # Errors
     /// Friction on another gel.
@@ -55,14 +55,14 @@ impl CoupledBatch {
         self.batch.n_taxels()
     }
 
-    /// One more moment of every sensor: what [`SensorBatch::step`] does, with what the [`Coupling`]
-    /// adds to readings and wrenches.
+    /// One step of every sensor: as [`SensorBatch::step`], with what the [`Coupling`] adds to
+    /// readings and wrenches.
     ///
-    /// A thing that was not there in the step before is new: its friction begins where it is, and
-    /// its loss with the next step.
+    /// A thing that was absent in the step before is new: its friction begins at its pose, and its
+    /// loss begins with the next step.
     ///
     /// # Errors
-    /// A thing that touches one sensor twice; nothing has been done then.
+    /// A thing that touches one sensor twice; then no sensor has been changed.
     ///
     /// # Panics
     /// Those of [`SensorBatch::step`].
@@ -96,17 +96,28 @@ impl CoupledBatch {
         Ok(())
     }
 
-    /// What each thing did in the last step by itself, in the order of the touches: force on the
-    /// gel, N, and torque about the top of the gel's middle, N mm, in the
-    /// frame in which the sensor should be.
+    /// The wrench of each touch by itself in the last step, in the order of the touches: force on
+    /// the gel, N, and torque about the top of the gel's middle, N mm, in the frame of the sensor
+    /// as described.
     pub fn wrench_of_touches(&self) -> impl Iterator<Item = &[f32; 6]> {
         self.batch.chunks.iter().flat_map(|chunk| &chunk.wrench_of_touch)
+    }
+
+    /// How fast each touch slipped over its gel in the last step, mm/s, along x and y of the gel,
+    /// in the order of the touches: 0 while it sticks or does not touch.
+    pub fn slip_of_touches(&self) -> impl Iterator<Item = &[f32; 2]> {
+        self.batch.chunks.iter().flat_map(|chunk| &chunk.slip_of_touch)
+    }
+
+    /// [`SensorBatch::ground_truth_kpa`].
+    pub fn ground_truth_kpa(&self) -> impl Iterator<Item = f32> + '_ {
+        self.batch.ground_truth_kpa()
     }
 
     /// [`SensorBatch::rest`].
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If there is no such sensor.
     pub fn rest(&mut self, sensor: usize) {
         self.batch.rest(sensor);
     }
@@ -114,7 +125,7 @@ impl CoupledBatch {
     /// [`SensorBatch::replace`].
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If there is no such sensor.
     pub fn replace(&mut self, sensor: usize, number: u64) {
         self.batch.replace(sensor, number);
     }
@@ -122,7 +133,7 @@ impl CoupledBatch {
     /// [`SensorBatch::state`], with what the gel holds.
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If there is no such sensor.
     #[must_use]
     pub fn state(&self, sensor: usize) -> SensorState {
         self.batch.state(sensor)
@@ -137,8 +148,8 @@ impl CoupledBatch {
     }
 }
 
-/// Every thing at most once on each sensor. Sensors have few touches: looking through them is
-/// faster than sorting.
+/// Checks that every thing touches each sensor at most once. Sensors have few touches, so a linear
+/// search is faster than sorting.
 fn each_once(touches: &[HeldTouch], ends: &[usize]) -> Result<(), TouchedTwice> {
     let mut start = 0;
     for (sensor, end) in ends.iter().enumerate() {

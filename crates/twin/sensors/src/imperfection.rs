@@ -1,54 +1,58 @@
-//! How far sensors are from perfect: distributions, in a TOML.
+//! Sensor variation: the distributions of deviations from a perfect sensor, read from TOML.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{ConfigError, Document};
 
-/// From what each sensor's imperfections are drawn. A zero leaves one out; [`Imperfection::default`] is a perfect sensor. *Deviation* is the
-/// standard deviation of a normal distribution about zero.
+/// The sensor variation: the distributions from which each sensor's deviations are drawn. Zero
+/// leaves a deviation out; [`Imperfection::default`] is a perfect sensor. *Deviation* in the fields
+/// is the standard deviation of a normal distribution about zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Imperfection {
-    /// Deviation of each taxel's gain, as part of it.
+    /// Deviation of each taxel's gain, as a fraction of the gain.
     pub gain_deviation: f64,
-    /// Deviation of how much each taxel's reading grows beyond proportion for each kPa of it, 1/kPa.
+    /// Deviation of the relative growth of each taxel's gain with its reading, 1/kPa.
     pub growth_deviation_per_kpa: f64,
     /// Deviation of each taxel's zero, kPa.
     pub offset_deviation_kpa: f64,
-    /// How much all taxels drift with temperature, kPa/K; of either sign.
+    /// Temperature drift that all taxels share, kPa/K; of either sign.
     pub drift_kpa_per_k: f64,
-    /// Deviation of how much each taxel drifts with temperature beyond that, kPa/K.
+    /// Deviation of each taxel's temperature drift from the shared one, kPa/K.
     pub drift_deviation_kpa_per_k: f64,
-    /// Deviation of the temperature from that of the tare, K. It wanders within [`Self::temperature_time_s`].
+    /// Deviation of the temperature from that of the tare, K. It fluctuates with the time constant
+    /// [`Self::temperature_time_s`].
     pub temperature_deviation_k: f64,
-    /// Time in which the temperature forgets what it was, s.
+    /// Time constant with which the temperature fluctuates, s.
     pub temperature_time_s: f64,
-    /// Part of what each other taxel feels that a taxel reads as well, beyond what the gel spreads; of either sign.
+    /// Fraction of every other taxel's pressure that a taxel reads in addition, beyond what the gel
+    /// spreads; of either sign.
     pub cross_talk: f64,
-    /// Deviation of that part from pair to pair.
+    /// Deviation of that fraction from pair to pair.
     pub cross_talk_deviation: f64,
     /// Deviation of each reading's noise, kPa.
     pub noise_deviation_kpa: f64,
-    /// Distance of the values that are told apart, kPa.
+    /// Resolution: step between readings, kPa.
     pub quantum_kpa: f64,
-    /// Half of the gap between loading and unloading, as part of the reading.
+    /// Half of the gap between loading and unloading, as a fraction of the reading.
     pub hysteresis: f64,
-    /// Chance that a taxel reads zero for ever.
+    /// Probability that a taxel always reads zero.
     pub dead_chance: f64,
-    /// Chance that a taxel stays at the first value that it reads.
+    /// Probability that a taxel stays at its first reading.
     pub stuck_chance: f64,
-    /// Chance that a taxel reads what it should have read a frame before.
+    /// Probability that a taxel's readings are late by one frame.
     pub late_chance: f64,
-    /// Frames that the bus delivers in a second, Hz; between them readings stay. Zero delivers one at each step.
+    /// Frames that the bus delivers in a second, Hz; readings stay the same between them. Zero
+    /// delivers a frame at each step.
     pub rate_hz: f64,
-    /// Deviation of the time between frames, as part of it.
+    /// Deviation of the time between frames, as a fraction of it.
     pub jitter: f64,
-    /// Deviation of the height at which the sensor is mounted, mm.
+    /// Deviation of the height at which the sensor is installed, mm.
     pub height_deviation_mm: f64,
-    /// Deviation of the sensor's place along x and along y, mm.
+    /// Deviation of the sensor's position along x and along y, mm.
     pub place_deviation_mm: f64,
-    /// Deviation of the sensor's turn about its upright axis, radians.
+    /// Deviation of the sensor's rotation about its vertical axis, radians.
     pub turn_deviation_rad: f64,
-    /// Deviation of its tilt about x and about y, radians.
+    /// Deviation of the sensor's tilt about x and about y, radians.
     pub tilt_deviation_rad: f64,
 }
 
@@ -104,7 +108,7 @@ impl Imperfection {
         }
         for (name, value) in parts {
             if !(0.0..=1.0).contains(&value) {
-                return Err(wrong(name, value, "give a part from 0 to 1"));
+                return Err(wrong(name, value, "give a fraction from 0 to 1"));
             }
         }
         if !self.drift_kpa_per_k.is_finite() {
@@ -115,18 +119,22 @@ impl Imperfection {
             ));
         }
         if !self.cross_talk.is_finite() || self.cross_talk.abs() > 1.0 {
-            return Err(wrong("cross_talk", self.cross_talk, "give a part from -1 to 1"));
+            return Err(wrong(
+                "cross_talk",
+                self.cross_talk,
+                "give a fraction from -1 to 1",
+            ));
         }
         let chances = self.dead_chance + self.stuck_chance + self.late_chance;
         if chances > 1.0 {
             return Err(wrong(
                 "late_chance",
                 self.late_chance,
-                "let the three chances add up to 1 at most",
+                "give three chances with a sum of at most 1",
             ));
         }
         if self.temperature_deviation_k > 0.0 && self.temperature_time_s == 0.0 {
-            let hint = "give the time in which the temperature wanders";
+            let hint = "give the time constant of the temperature";
             return Err(wrong("temperature_time_s", 0.0, hint));
         }
         Ok(())

@@ -1,9 +1,52 @@
-//! Many touch sensors, each imperfect in its own way, stepped in one call.
+//! Many touch sensors, each with its own variation, stepped in one call.
 //!
-//! A [`SensorBatch`] goes from what touches to what barometers would read: the fast gel gives the pressures at the ports, a trained twin, if
-//! there is one, its gains, port law and memory, and an [`Imperfection`] what no two sensors have
-//! alike. A [`CoupledBatch`] holds what touches it, with friction and loss.
-//! All of it is simulated.
+//! Inputs of a step are rigid bodies, their poses in the frame of each sensor, mm, and the time
+//! since the last step, s. Outputs are the reading of each taxel, kPa, and the force, N, and
+//! torque, N mm, on each gel. All outputs are `simulated`.
+//!
+//! - [`SensorBatch`]: sensors of one kind. The surrogate of the gel gives the pressures at the
+//!   ports. A trained twin, if there is one, adds its gains, static nonlinearity of the ports and
+//!   viscoelastic relaxation. [`Imperfection`] adds what differs from sensor to sensor.
+//! - [`CoupledBatch`]: the same, with friction and loss between bodies and gels ([`Coupling`]), for
+//!   bodies that move freely.
+//! - [`Imperfection`]: the sensor variation: the distributions from which each sensor's deviations
+//!   are drawn, read from TOML.
+//! - [`SensorState`]: everything of one sensor that a step changes.
+//!
+//! # How it works
+//!
+//! ```text
+//! poses ─► installation: the pose of each sensor, as it deviates from the described one
+//!       ─► surrogate (twintac-fast): pressures at the ports, force and torque
+//!       ─► CoupledBatch alone: friction and loss
+//!       ─► twin (digitac), if there is one: what ideal barometers read
+//!       ─► each sensor's variation: hysteresis, cross-talk, gain, growth, zero, temperature
+//!          drift, noise, resolution, faults, frame rate
+//!       ─► readings
+//! ```
+//!
+//! ```text
+//! batch         SensorBatch: many sensors on several threads
+//! coupled, hold CoupledBatch, and what gels hold between steps
+//! chunk         the sensors of one thread
+//! sensor        the drawn deviations of one sensor, and how they change its readings
+//! imperfection  the distributions, and their file
+//! state         the state of one sensor
+//! ```
+//!
+//! A [`SensorBatch`] gives each thread its own sensors, from poses to readings, in one parallel
+//! region for each step. With a single thread the thread pool is not used.
+//! `cargo xtask bench sensors` measures the rate, and
+//! `crates/twin/sensors/examples/rate/profile.py` counts the instructions of a step by function.
+//!
+//! The deviations of a sensor are drawn from a random stream of the seed and the sensor's number.
+//! They do not depend on the other sensors, or on the number of threads.
+//!
+//! Friction and loss are a type of their own, [`CoupledBatch`]. Its steps take a [`TouchId`] with
+//! each touch, because what a gel remembers of a contact belongs to the thing that touches, not to
+//! the thing's shape or its position in a list.
+//!
+//! The crate does not depend on solvers or on the emulated bench.
 
 mod batch;
 mod chunk;

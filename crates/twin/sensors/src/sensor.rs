@@ -1,4 +1,4 @@
-//! One sensor: what was drawn for it, and what it remembers.
+//! One sensor: its drawn deviations, and its state.
 
 use glam::{DQuat, DVec3};
 use rand::Rng;
@@ -7,17 +7,18 @@ use twintac_shape::Pose;
 
 use crate::Imperfection;
 
-/// Smallest time between two frames, as part of the usual one.
+/// Smallest time between two frames, as a fraction of the mean one.
 const SHORTEST_FRAME: f64 = 0.1;
 
-/// A sensor with imperfections of its own.
+/// A sensor with its own deviations.
 #[derive(Clone, Debug)]
 pub(crate) struct Sensor {
     random: RandomStream,
     taxels: Vec<Taxel>,
-    /// Part of what each taxel feels that each one reads, `[reads][feels]`; empty without cross-talk.
+    /// Cross-talk: fraction of the pressure at one taxel that another one reads, `[reads][feels]`;
+    /// empty without cross-talk.
     couplings: Vec<f64>,
-    /// From where the sensor should be to where it is.
+    /// From the described frame of the sensor to its actual one.
     pub(crate) actual_from_described: Pose,
     temperature_k: f64,
     /// Time until the bus delivers the next frame, s.
@@ -33,15 +34,15 @@ struct Taxel {
     growth_per_kpa: f64,
     offset_kpa: f64,
     drift_kpa_per_k: f64,
-    /// What hysteresis lets through, kPa.
+    /// Pressure after hysteresis, kPa.
     behind_kpa: f64,
-    /// What should have been read at the last frame, kPa.
+    /// The reading without a fault at the last frame, kPa.
     before_kpa: f64,
     /// What the bus delivered last, kPa; `None` before the first frame.
     delivered_kpa: Option<f64>,
 }
 
-/// What has become of a taxel.
+/// The fault of a taxel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fate {
     Fine,
@@ -51,7 +52,8 @@ enum Fate {
 }
 
 impl Sensor {
-    /// Draws the sensor of a number. The same seed and number give the same sensor, whatever else there is.
+    /// Draws the sensor of a number. The same seed and number give the same sensor, whatever other
+    /// sensors there are.
     pub(crate) fn draw(imperfection: &Imperfection, n_taxels: usize, seed: u64, number: u64) -> Self {
         let mut random = stream(seed, &format!("sensor {number}"));
         let mut turn = |deviation_rad: f64| normal(&mut random, deviation_rad);
@@ -79,7 +81,7 @@ impl Sensor {
         }
     }
 
-    /// One more moment: from what each taxel should read, kPa, to what the bus delivers. `[n_taxels]`
+    /// One step: from the reading of an ideal sensor, kPa, to what the bus delivers. `[n_taxels]`
     pub(crate) fn step(
         &mut self,
         imperfection: &Imperfection,
@@ -96,7 +98,7 @@ impl Sensor {
         if is_first {
             (self.until_frame_s, self.since_frame_s) = (0.0, 0.0);
         }
-        // Rounding does not cost a frame.
+        // A frame is not lost by rounding.
         let is_frame = imperfection.rate_hz == 0.0 || self.until_frame_s <= 1e-9;
         if is_frame {
             self.wander(imperfection);
@@ -114,14 +116,14 @@ impl Sensor {
         }
     }
 
-    /// What a taxel reads of what the others feel, kPa.
+    /// Cross-talk of the other taxels at a taxel, kPa.
     fn cross_talk_kpa(&self, number: usize) -> f64 {
         let of_taxel = self.couplings.chunks_exact(self.taxels.len()).nth(number);
         let pairs = of_taxel.into_iter().flatten().zip(&self.taxels);
         pairs.map(|(part, other)| part * other.behind_kpa).sum()
     }
 
-    /// The temperature changes: an Ornstein-Uhlenbeck process, exact for any time.
+    /// Changes the temperature: an Ornstein-Uhlenbeck process, exact for any time step.
     fn wander(&mut self, imperfection: &Imperfection) {
         if imperfection.temperature_deviation_k > 0.0 {
             let kept = (-self.since_frame_s / imperfection.temperature_time_s).exp();
@@ -139,13 +141,14 @@ impl Sensor {
             } else {
                 0.0
             };
-            // A frame that was late does not make the next one late; more than one that was missed is gone.
+            // A late frame does not delay the next one; of several missed frames only one is made
+            // up for.
             let late_s = self.until_frame_s.max(-1.0 / imperfection.rate_hz);
             self.until_frame_s = late_s + (1.0 + jitter).max(SHORTEST_FRAME) / imperfection.rate_hz;
         }
     }
 
-    /// The gel has rested: nothing is remembered but what the sensor is.
+    /// Resets the state to that of a relaxed gel. The drawn deviations stay.
     pub(crate) fn rest(&mut self) {
         self.until_frame_s = 0.0;
         for taxel in &mut self.taxels {
@@ -158,7 +161,8 @@ impl Sensor {
     }
 }
 
-/// Parts for each pair of taxels; nothing without cross-talk, so that other sensors stay what they are.
+/// Cross-talk of each pair of taxels; empty without cross-talk, so that no random numbers are drawn
+/// and the other deviations stay the same.
 fn couplings(imperfection: &Imperfection, n_taxels: usize, random: &mut RandomStream) -> Vec<f64> {
     let Imperfection {
         cross_talk,
@@ -209,7 +213,8 @@ impl Taxel {
         }
     }
 
-    /// A play as wide as a part of the reading: less on the way up, more on the way down.
+    /// Hysteresis: a play operator whose width is a fraction of the reading. It reads less during
+    /// loading and more during unloading.
     fn lag(&mut self, hysteresis: f64, true_kpa: f64) {
         let half_kpa = hysteresis * true_kpa.abs();
         self.behind_kpa = self.behind_kpa.clamp(true_kpa - half_kpa, true_kpa + half_kpa);

@@ -1,20 +1,20 @@
-//! What a sensor is and remembers at a moment.
+//! The state of one sensor.
 
 use digitac::TwinMemory;
 
 use crate::hold::Holds;
 use crate::sensor::Sensor;
 
-/// What a sensor is and remembers at a moment: its imperfections and the random numbers to come,
-/// its twin's memory, and what its gel holds. Set back with
-/// [`SensorBatch::set_state`](crate::SensorBatch::set_state), the sensor goes on to the same bits.
+/// The state of one sensor: its deviations and the state of its random stream, the state of its
+/// twin, and what its gel holds. A sensor that is set back to it with
+/// [`SensorBatch::set_state`](crate::SensorBatch::set_state) continues with the same bits.
 #[derive(Clone, Debug)]
 pub struct SensorState {
     pub(crate) sensor: Sensor,
     pub(crate) holds: Holds,
     /// `None` without a twin.
     pub(crate) twin: Option<TwinMemory>,
-    /// What the gel showed last. `[n_taxels]`
+    /// The last pressures of the gel, kPa. `[n_taxels]`
     pub(crate) pressure_kpa: Vec<f32>,
 }
 
@@ -25,7 +25,7 @@ impl SensorState {
         self.pressure_kpa.len()
     }
 
-    /// Whether it is that of a sensor with a twin.
+    /// Whether the state belongs to a sensor with a twin.
     #[must_use]
     pub fn has_twin(&self) -> bool {
         self.twin.is_some()

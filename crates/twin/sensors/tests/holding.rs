@@ -1,4 +1,4 @@
-//! Bodies that move freely are held by gels: friction, loss, several bodies at once.
+//! Friction, loss and several bodies at once, for bodies that move freely.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -31,7 +31,7 @@ fn imperfect(imperfection: Imperfection, sizes: [usize; 2], retardation_s: f64) 
         .unwrap()
 }
 
-/// The only thing of this shape.
+/// A thing that is the only one of its shape.
 fn at(body: u32, x_mm: f64, y_mm: f64, depth_mm: f64) -> HeldTouch {
     thing(u64::from(body), body, [x_mm, y_mm, depth_mm])
 }
@@ -67,7 +67,8 @@ fn a_pulled_body_is_held_and_felt() {
         pressed[0].abs() < 0.02 && pulled[0] > 0.1,
         "{pressed:?} {pulled:?}"
     );
-    // Taxels 1 and 5 are behind, 2 and 6 ahead. The ball itself moves by a sixteenth of their distance.
+    // Taxels 1 and 5 are behind the ball, 2 and 6 ahead. The ball itself moves by a sixteenth of
+    // their distance.
     let mut without = FastGel::phystac().unwrap().reader();
     let mut moved_kpa = [0.0; 8];
     let ball = &balls()[0];
@@ -78,6 +79,26 @@ fn a_pulled_body_is_held_and_felt() {
     );
     assert!(pulled_kpa[2] > moved_kpa[2] + 0.2 && pulled_kpa[1] < moved_kpa[1] - 0.2);
     assert!((pressed_kpa[2] - pressed_kpa[1]).abs() < 0.1);
+}
+
+#[test]
+fn the_slip_of_a_body_is_the_motion_that_friction_does_not_hold() {
+    let mut batch = sensors(1, 1, 0.0);
+    let slip = |batch: &CoupledBatch| batch.slip_of_touches().next().copied().unwrap();
+    step(&mut batch, &[at(0, 0.0, 0.0, 1.0)]);
+    step(&mut batch, &[at(0, 0.01, 0.0, 1.0)]);
+    assert_eq!(slip(&batch), [0.0; 2], "it sticks");
+    for moment in 1..=60 {
+        step(&mut batch, &[at(0, 0.01 + 0.05 * f64::from(moment), 0.0, 1.0)]);
+    }
+    // 0.05 mm in 0.01 s. The force changes a little from location to location.
+    let [along, across] = slip(&batch);
+    assert!(
+        (along - 5.0).abs() < 0.25 && across.abs() < 0.25,
+        "{along} {across}"
+    );
+    step(&mut batch, &[at(0, 3.01, 0.0, -1.0)]);
+    assert_eq!(slip(&batch), [0.0; 2], "nothing touches");
 }
 
 #[test]
@@ -118,7 +139,8 @@ fn sensors_hold_the_same_for_any_number_of_threads() {
     assert_eq!(all(1), all(5));
 }
 
-/// The force under a ball of 100 g that falls onto the gel from 1 mm above, N, and its speed, mm/s, after 1.5 s.
+/// A ball of 100 g falls onto the gel from 1 mm above. Returns the force under it, N, and its
+/// speed, mm/s, after 1.5 s.
 fn fallen(retardation_s: f64) -> (f64, f64) {
     let (step_s, mass_kg) = (0.001, 0.1);
     let mut batch = sensors(1, 1, retardation_s);
@@ -152,7 +174,7 @@ fn equal_bodies_are_held_each_by_itself() {
     let mut batch = sensors(1, 1, 0.0);
     for moment in 0..5 {
         let mut touches = [thing(7, 1, left), thing(3, 1, right)];
-        // A place in the list is nothing to go by.
+        // The position in the list does not matter.
         if moment % 2 == 1 {
             touches.reverse();
         }
@@ -164,7 +186,7 @@ fn equal_bodies_are_held_each_by_itself() {
         );
         assert!((apart[0][0] + apart[1][0]).abs() < 0.02, "{apart:?}");
     }
-    // What two shapes of a size do is the same to the last bit.
+    // Two shapes of one size give the same bits as one shape used twice.
     let (_, of_one_shape) = step(&mut batch, &[thing(7, 1, left), thing(3, 1, right)]);
     let mut others = sensors(1, 1, 0.0);
     let twins = || vec![balls()[1].clone(), balls()[1].clone()];
@@ -189,7 +211,7 @@ fn what_comes_is_not_what_has_left() {
     step(&mut dragged, &[thing(1, 0, [-5.0, 0.0, 1.0])]);
     let (_, dragged) = step(&mut dragged, &[thing(1, 0, [5.0, 0.0, 1.0])]);
     assert!(dragged[0] > arrived[0] + 0.2, "{dragged:?} {arrived:?}");
-    // Who swaps places has swapped them.
+    // Two things that exchange their positions are dragged there.
     let mut batch = sensors(1, 1, 0.0);
     let (left, right) = ([-8.0, 0.0, 1.0], [8.0, 0.0, 1.0]);
     step(&mut batch, &[thing(1, 1, left), thing(2, 1, right)]);
@@ -274,7 +296,7 @@ fn a_sensor_goes_on_from_its_state_to_the_same_bits() {
     assert_ne!(first, go_on(&mut batch));
     batch.set_state(0, &state);
     assert_eq!(first, go_on(&mut batch));
-    // As another sensor of the batch, too.
+    // Also in another sensor of a batch.
     let mut others = imperfect(imperfection(), [2, 2], 0.005);
     others.set_state(1, &state);
     let replayed: Vec<_> = (20..40)

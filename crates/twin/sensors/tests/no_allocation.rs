@@ -1,4 +1,4 @@
-//! Steps allocate nothing.
+//! Steps do not allocate memory.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -12,7 +12,7 @@ use twintac_shape::{Pose, Shape, Surfaces};
 #[path = "../examples/rate/counting.rs"]
 mod counting;
 #[path = "../../digitac/examples/step_rate/invented.rs"]
-#[allow(dead_code)] // what the benchmark alone needs
+#[allow(dead_code)] // the benchmark alone needs some of it
 mod invented;
 
 const N_TAXELS: usize = 8;
@@ -48,7 +48,8 @@ fn touches(step: usize) -> Vec<Touch> {
     (0..2 * N_SENSORS).map(touch).collect()
 }
 
-/// All in one test: what another does at the same time would be counted too.
+/// This is one test, because the allocations of another test that runs at the same time would be
+/// counted too.
 #[test]
 fn steps_allocate_nothing() {
     let cube = Shape::Box {
@@ -107,7 +108,8 @@ fn steps_allocate_nothing() {
         counting::n_allocations() - before
     };
     assert_eq!(counting::fewest_of_runs(counted_holding), 0, "gels that hold");
-    // Work that comes from a thread beside the pool goes through the pool's queue, which takes memory for some 60 entries at once.
+    // Work from a thread outside the pool goes through the pool's queue, which allocates memory for
+    // some 60 entries at once.
     assert!(counting::fewest_of_runs(|| counted(2)) <= 2);
 
     let mut reader = gel.reader();

@@ -1,4 +1,5 @@
-//! Sensors side by side read what each reads alone, and imperfections do what they say.
+//! Sensors in a batch give the same readings as alone, and each deviation has the effect that is
+//! described.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -211,7 +212,8 @@ fn a_part_of_what_the_others_feel_is_read_too() {
             "{found_kpa}, not {expected_kpa}"
         );
     }
-    // Pairs of their own: over many sensors, parts have no mean, and the deviation that was asked for.
+    // Deviations from pair to pair: over many sensors, the fractions have mean zero and the given
+    // standard deviation.
     let of_sensors = &readings(&talking(0.0, 0.02), 500, 1, 3, &[1.5])[0];
     let strongest = (0..N_TAXELS)
         .max_by(|a, b| perfect[*a].total_cmp(&perfect[*b]))
@@ -268,6 +270,34 @@ fn a_slow_bus_repeats_and_a_late_taxel_is_a_frame_behind() {
     let found = readings(&late, 1, 1, 1, &depths_mm);
     assert_eq!(found[0], [0.0; N_TAXELS]);
     assert_eq!(found[1..], perfect[..4]);
+}
+
+#[test]
+fn the_ground_truth_has_no_variation() {
+    let gel = FastGel::phystac().unwrap();
+    let step = |batch: &mut SensorBatch| {
+        let (mut readings_kpa, mut wrench) = (vec![0.0; 3 * N_TAXELS], vec![[0.0; 6]; 3]);
+        let touches: Vec<Touch> = (0..3).map(|number| touch(f64::from(number), 1.0)).collect();
+        batch.step(
+            0.01,
+            &ball(),
+            &touches,
+            &[1, 2, 3],
+            &mut readings_kpa,
+            &mut wrench,
+        );
+        readings_kpa
+    };
+    let noisy = Imperfection {
+        gain_deviation: 0.1,
+        noise_deviation_kpa: 0.1,
+        ..Imperfection::default()
+    };
+    let mut imperfect = SensorBatch::new(&gel, None, noisy, [3, 2], 1);
+    let mut perfect = SensorBatch::new(&gel, None, Imperfection::default(), [3, 2], 1);
+    let expected = step(&mut perfect);
+    assert_ne!(step(&mut imperfect), expected);
+    assert_eq!(imperfect.ground_truth_kpa().collect::<Vec<f32>>(), expected);
 }
 
 #[test]

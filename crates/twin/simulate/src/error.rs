@@ -1,8 +1,8 @@
-//! What can go wrong in a simulated press.
+//! Errors of a simulated press.
 
 use twintac_softbody::SolveError;
 
-/// Why the solver did not take a step, and which setting may help.
+/// Why the solver could not take a step, and which setting may help.
 pub(crate) fn reason(error: &SolveError) -> String {
     match error {
         SolveError::PassedThrough { .. } => format!("{error}: settings `contact_edge_mm` and `max_nodes`"),
@@ -10,8 +10,8 @@ pub(crate) fn reason(error: &SolveError) -> String {
     }
 }
 
-/// A press that could not be set up. A press that starts and then does not converge is not an error: its table ends at the last converged
-/// depth, with the reason.
+/// A press that could not be set up. A press that starts and then does not converge is not an
+/// error: its table ends at the last converged depth, with the reason.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulateError {
     /// The gel could not be meshed.
@@ -23,7 +23,7 @@ pub enum SimulateError {
     /// The indenter is not a possible shape.
     #[error("the indenter can't be built: {0}")]
     Shape(#[from] twintac_shape::ShapeError),
-    /// A frame of a press that must be had in full could not be reached.
+    /// A frame could not be reached, and the caller needs every frame of the press.
     #[error("the gel can't be pressed {depth_mm:.3} mm deep: {}", reason(error))]
     Press {
         /// Depth below first touch, mm.
@@ -34,14 +34,14 @@ pub enum SimulateError {
     /// The indenter would come down beside the gel.
     #[error("the indenter at x = {x_mm:.2} mm, y = {y_mm:.2} mm does not touch the gel")]
     NoTouch {
-        /// Place of the press, mm.
+        /// x of the press, mm.
         x_mm: f64,
-        /// Place of the press, mm.
+        /// y of the press, mm.
         y_mm: f64,
     },
-    /// A force that the sensor does not stand.
+    /// A force above the sensor's limit.
     #[error(
-        "`force_n` is {force_n} N, the sensor stands {limit_n} N at most (`limits.force_n` of its description); ask for less"
+        "`force_n` is {force_n} N, the sensor withstands {limit_n} N at most (`limits.force_n` of its description); ask for less"
     )]
     ForceLimit {
         /// The force that was asked for, N.
@@ -54,11 +54,11 @@ pub enum SimulateError {
     NoIndenter {
         /// The name that was asked for.
         asked_for: String,
-        /// The names that there are.
+        /// The names in the description.
         described: Vec<String>,
     },
     /// A point of a path has the name of a taxel.
-    #[error("the point `{point}` is called like a taxel; give it another name")]
+    #[error("the point `{point}` has the name of a taxel; give it another name")]
     PointIsTaxel {
         /// The name.
         point: String,

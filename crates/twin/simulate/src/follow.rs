@@ -1,4 +1,4 @@
-//! An indenter on a path of its own: down, aside, tilted, and up again, to poses or with forces.
+//! An indenter along a path: down, sideways, tilted and up again, given by poses or by forces.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -24,25 +24,29 @@ pub struct FollowedFrame {
     pub time_s: f64,
     /// The indenter's origin, mm; z counts from the board.
     pub position_mm: DVec3,
-    /// How far the indenter is below where, at the place and turn of the first pose, it first touches the gel, mm.
+    /// Depth of the indenter, mm, from its height at first touch at the location and rotation of
+    /// the path's first pose.
     pub depth_mm: f64,
     /// Force of the indenter, N.
     pub force_n: DVec3,
     /// Torque of the indenter about its origin, N mm.
     pub torque_n_mm: DVec3,
-    /// Hydrostatic pressure -tr(σ)/3, averaged over the port of each taxel and over each point's disc, kPa.
+    /// Hydrostatic pressure -tr(σ)/3, averaged over the port of each taxel and over the disc of
+    /// each point of the path, kPa; by name.
     pub pressure_kpa: BTreeMap<String, f64>,
-    /// How the pressure at each taxel changes with its port's place along x, along y and with its radius, kPa/mm; `[n_taxels]`.
+    /// Derivatives of the pressure at each taxel with respect to its port's x, y and radius,
+    /// kPa/mm; `[n_taxels]`.
     #[serde(skip)]
     pub port_slope_kpa_per_mm: Vec<[f64; 3]>,
-    /// The stress feature above each taxel, as a table over depth has it, kPa/mm; `[n_taxels]`, or empty if the gel was not asked for it by
-    /// [`Gel::with_stress_along_paths`].
+    /// The stress feature above each taxel, as in a table over depth, kPa/mm; `[n_taxels]`. Empty
+    /// unless the gel was asked for it by [`Gel::with_stress_along_paths`].
     #[serde(skip)]
     pub stress_feature_kpa_per_mm: Vec<f64>,
-    /// Whether the forces are balanced: they are, unless the gel had a deadline ([`Gel::with_deadline`]) that came first.
+    /// Whether the forces are balanced. They always are, unless the gel has a deadline
+    /// ([`Gel::with_deadline`]) that came first.
     #[serde(default = "yes")]
     pub converged: bool,
-    /// Quality of the solve; its residual says how far from balanced the forces are.
+    /// Quality of the solve. Its residual says how far the forces are from balance.
     pub quality: SolveQuality,
     /// Wall time of the frame, s. It is not reproducible, and no result depends on it.
     pub wall_time_s: f64,
@@ -50,7 +54,7 @@ pub struct FollowedFrame {
     pub cost: Cost,
 }
 
-/// Frames of before there were deadlines had converged.
+/// Frames that were written before there were deadlines had converged.
 fn yes() -> bool {
     true
 }
@@ -62,9 +66,9 @@ pub struct Followed {
     pub n_nodes: usize,
     /// Tetrahedra of the mesh.
     pub n_tets: usize,
-    /// Frames up to the last good one.
+    /// Frames, up to the last one that was solved.
     pub frames: Vec<FollowedFrame>,
-    /// Why the frames end before the path does; `None` if they do not.
+    /// Why the frames end before the path does; `None` if they reach its end.
     pub failure: Option<String>,
 }
 
@@ -80,7 +84,7 @@ impl Gel {
         let depth_mm = |pose: &Pose| touch_mm - pose.position_mm.z;
         let is_pressed = |frame: &&PathFrame| depth_mm(&frame.pose) > 0.0 || frame.forces_n[1].is_some();
         let place = |frame: &PathFrame| frame.pose.position_mm.truncate();
-        // Half the gel's height apart, the fine parts of the mesh run into each other.
+        // Fine parts of the mesh that are half the gel's height apart run into each other.
         let apart_mm = 0.5 * self.height_mm();
         let mut ways_mm: Vec<DVec2> = vec![DVec2::ZERO];
         for frame in frames.iter().filter(is_pressed) {
@@ -98,7 +102,8 @@ impl Gel {
             let guess_mm = deepest_mm.max(GUESSED_DEPTH * self.height_mm());
             let gel = self.coarse().mesh_for(shape, &first, guess_mm, Some(ways_mm))?;
             let mut walk = Walk::new(gel, path, self.height_mm());
-            // Between waypoints forces and poses change evenly: the deepest place is at one.
+            // Forces and poses change linearly between waypoints, so the deepest location is at a
+            // waypoint.
             let waypoints = PressPath {
                 rate_hz: None,
                 ..path.clone()
@@ -125,10 +130,12 @@ impl Gel {
         Ok(frames)
     }
 
-    /// Takes an indenter along a path. The mesh is fine wherever the path presses. `advanced` hears of each frame, and says whether to go on.
+    /// Takes an indenter along a path. The mesh is fine wherever the path presses. `advanced` is
+    /// called after each frame and says whether to continue.
     ///
     /// # Errors
-    /// Those of [`Gel::mesh`], and a point outside the gel. A path that can't be followed to its end is no error.
+    /// Those of [`Gel::mesh`], and a point outside the gel. A path that cannot be followed to its
+    /// end is not an error: see [`Followed::failure`].
     pub fn follow(
         &self,
         shape: &Shape,

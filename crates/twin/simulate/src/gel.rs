@@ -19,16 +19,19 @@ use crate::shell::Wall;
 use crate::touch::{contact_radius_mm, first_touch};
 use crate::{PressHistory, SimulateError, SimulateSettings};
 
-/// Part of the depth at which the indenter is about as wide as its contact: half, exactly so for a sphere by Hertz's theory.
+/// Fraction of the depth at which the indenter is about as wide as its contact. One half is exact
+/// for a sphere in Hertz's theory.
 const CONTACT_DEPTH: f64 = 0.5;
 
-/// By how much edges grow at least when a mesh has too many nodes.
+/// Smallest factor by which edges grow when a mesh has too many nodes.
 const MIN_COARSENING: f64 = 1.01;
 
-/// Largest ratio of edges away from the indenter to those under it. Cells below a pin would be slivers beyond that: as wide as the ones, as high as the others.
+/// Largest ratio of edge lengths away from the indenter to those under it. Beyond it, cells below a
+/// pin would be slivers: as narrow as the short edges and as high as the long ones.
 const LARGEST_EDGE_RATIO: f64 = 20.0;
 
-/// Power of the excess of nodes by which edges grow: less than a third, as the number of nodes falls in steps.
+/// Edges grow by the excess of nodes to this power. It is less than a third, because the number of
+/// nodes falls in steps.
 const COARSENING_POWER: f64 = 0.2;
 
 /// Nodes of a coarse mesh that is only used to estimate how deep a force presses.
@@ -36,11 +39,12 @@ const COARSE_NODES: usize = 1500;
 
 /// How finely a kind of press is meshed.
 struct Fineness {
-    /// Edges as part of those asked for, if there are nodes for it.
+    /// Length of edges as a fraction of the length asked for, if the number of nodes allows it.
     scale: f64,
-    /// Shortest edge at a rim as part of the edge under the rest of the indenter.
+    /// Shortest edge at a rim as a fraction of the edge under the rest of the indenter.
     sharpest: f64,
-    /// Nodes of a mesh with fine rims as part of those that it may have without.
+    /// Number of nodes that a mesh with fine rims may have, as a fraction of the number allowed
+    /// without them.
     rim_share: f64,
 }
 
@@ -56,20 +60,20 @@ const PATH: Fineness = Fineness {
     rim_share: 1.6,
 };
 
-/// A gel and how finely it is to be simulated. Shared by many presses.
+/// A gel and the settings of its simulation. Many presses share it.
 #[derive(Clone, Debug)]
 pub struct Gel {
     sensor: Arc<Sensor>,
     settings: SimulateSettings,
     material: Material,
-    /// Whether paths read the stress feature.
+    /// Whether paths also give the stress feature.
     pub(crate) stress_along_paths: bool,
     /// Wall time that a frame of a path may take.
     pub(crate) deadline: Option<Duration>,
     upwards: DVec3,
 }
 
-/// A gel is written with all that its answers depend on.
+/// The serialized gel has everything that its results depend on.
 impl Serialize for Gel {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self {
@@ -92,18 +96,18 @@ impl Serialize for Gel {
     }
 }
 
-/// Where, with what and how deep to press.
+/// Location, indenter and depth of a press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PressPlace {
     /// The indenter's name, for the record.
     pub indenter: String,
     /// The indenter's shape.
     pub shape: Shape,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// x of the indenter's origin in the gel's plane, mm.
     pub x_mm: f64,
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// y of the indenter's origin in the gel's plane, mm.
     pub y_mm: f64,
-    /// Tilt and spin of the indenter.
+    /// Tilt and yaw of the indenter.
     pub rotation: DQuat,
     /// Depth below first touch to simulate, mm.
     pub depth_mm: f64,
@@ -120,7 +124,7 @@ pub struct Keyframe {
     pub depth_mm: f64,
 }
 
-/// One press's mesh and model, with where the indenter touches first.
+/// The mesh and the model of one press, with the pose of first touch.
 pub struct GelMesh {
     pub(crate) body: SoftBody,
     pub(crate) indenter: Box<dyn SignedDistance>,
@@ -146,37 +150,41 @@ impl Gel {
         }
     }
 
-    /// The same gel, whose paths read the stress feature above each taxel as well. They take about a third longer.
+    /// The same gel, which also gives the stress feature above each taxel along paths. Paths take
+    /// about a third longer.
     #[must_use]
     pub fn with_stress_along_paths(mut self) -> Self {
         self.stress_along_paths = true;
         self
     }
 
-    /// The same gel, whose frames along paths, and of [`crate::GelState`], are answered within a wall time, settled or not: [`crate::FollowedFrame::converged`] says which. Frames
-    /// with a prescribed force take the time that they need. Such results are not reproducible.
+    /// The same gel with a wall time for each frame along paths and of a [`crate::GelState`]. A
+    /// frame is answered within it, converged or not: see [`crate::FollowedFrame::converged`].
+    /// Frames with a prescribed force take the time that they need. Such results are not
+    /// reproducible.
     #[must_use]
     pub fn with_deadline(mut self, deadline: Duration) -> Self {
         self.deadline = Some(deadline);
         self
     }
 
-    /// The same gel under a robot whose way up has this unit vector in the gel's frame: on a sensor that does not lie level it is not z. Depths count
-    /// along it. Paths have directions of their own.
+    /// The same gel under a robot whose upward direction is this unit vector in the gel's frame; it
+    /// is not z for a sensor that does not lie level. Depths count along it. Paths have directions
+    /// of their own.
     #[must_use]
     pub fn with_upwards(mut self, upwards: DVec3) -> Self {
         self.upwards = upwards;
         self
     }
 
-    /// The same gel of another material.
+    /// The same gel with another material.
     #[must_use]
     pub fn with_material(mut self, material: Material) -> Self {
         self.material = material;
         self
     }
 
-    /// The same gel on a sensor that differs in its indenters alone.
+    /// The same gel with a sensor that differs only in its indenters.
     #[must_use]
     pub fn with_sensor(mut self, sensor: Arc<Sensor>) -> Self {
         self.sensor = sensor;
@@ -230,7 +238,8 @@ impl Gel {
             .mesh_for(&place.shape, &above, place.depth_mm, None)
     }
 
-    /// Coulomb's coefficient of friction between an indenter and the gel: the described one, or else that of the settings.
+    /// Coulomb's coefficient of friction between an indenter and the gel: from the description, or
+    /// else from the settings.
     #[must_use]
     pub fn friction(&self, indenter: &str) -> f64 {
         let known = self.sensor.indenter(indenter);
@@ -239,20 +248,21 @@ impl Gel {
             .unwrap_or(self.settings.solver.friction)
     }
 
-    /// The same gel with this friction of whatever has none described.
+    /// The same gel with this coefficient of friction for every indenter that has none in the
+    /// description.
     #[must_use]
     pub fn with_friction(mut self, friction: f64) -> Self {
         self.settings.solver.friction = friction;
         self
     }
 
-    /// The same gel with the friction of an indenter.
+    /// The same gel with the coefficient of friction of an indenter.
     pub(crate) fn rough_for(&self, indenter: &str) -> Self {
         let friction = self.friction(indenter);
         self.clone().with_friction(friction)
     }
 
-    /// The same gel with a coarse mesh, to estimate how deep a force presses.
+    /// The same gel with a coarse mesh, to estimate the depth to which a force presses.
     pub(crate) fn coarse(&self) -> Self {
         let mut gel = self.clone();
         gel.settings.edges_per_height = gel.settings.edges_per_height.min(4.0);
@@ -261,7 +271,8 @@ impl Gel {
         gel
     }
 
-    /// Meshes the gel for an indenter that touches first below a pose and goes this deep; for a path, with its displacements after that.
+    /// Meshes the gel for an indenter that first touches below a pose and presses to this depth.
+    /// For a path, `ways_mm` are the displacements from there.
     pub(crate) fn mesh_for(
         &self,
         shape: &Shape,
@@ -287,7 +298,7 @@ impl Gel {
             })
             .collect();
         let generate = |scale: f64, stretches: &[Vec<Stretch>; 2]| {
-            // However few nodes are allowed, there is an edge over the gel's height.
+            // There is at least one edge over the gel's height, however few nodes are allowed.
             let [coarse_mm, fine_mm] =
                 [coarse_mm, fine_mm].map(|edge_mm| self.height_mm().min(scale * edge_mm));
             let settings = MeshSettings {
@@ -303,7 +314,7 @@ impl Gel {
                     .collect(),
                 ..MeshSettings::default()
             };
-            // Each of its tetrahedra will be cut into eight, with edges half as long.
+            // Each of these tetrahedra will be cut into eight, with edges half as long.
             twintac_mesh::generate_unchecked(solid, &sensor.surfaces, &inclusions, &settings.scaled(2.0))
         };
         let even = |scale: f64| generate(scale, &Default::default());
@@ -337,14 +348,16 @@ impl Gel {
         )
     }
 
-    /// Presses a place to increasing depths. A table that ends early says why in [`DepthTable::failure`].
+    /// Presses a location to increasing depths. A table that ends early gives the reason in
+    /// [`DepthTable::failure`].
     pub fn depth_table(&self, place: &PressPlace) -> Result<DepthTable, SimulateError> {
         Ok(self
             .mesh(place)?
             .depth_table(place, &self.depths(place), &mut |_| ()))
     }
 
-    /// The depths of a table: closer together near the surface, where the contact grows fastest.
+    /// The depths of a table. They are closer together near the surface, where the contact grows
+    /// fastest.
     #[must_use]
     pub fn depths(&self, place: &PressPlace) -> Vec<Keyframe> {
         let n_frames = (place.depth_mm / self.settings.depth_step_mm)
@@ -359,13 +372,14 @@ impl Gel {
             .collect()
     }
 
-    /// Follows a trajectory in time; the material relaxes as its history variables say.
+    /// Follows a trajectory in time. The material relaxes according to its history variables.
     pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Result<PressHistory, SimulateError> {
         Ok(self.mesh(place)?.press(place, keyframes, &mut |_| ()))
     }
 }
 
-/// The finest of ever coarser meshes that has few enough nodes, or else the coarsest, and its scale.
+/// Generates ever coarser meshes. Returns the first (finest) one with few enough nodes, or else the
+/// coarsest, with its scale.
 fn coarsen(
     generate: impl Fn(f64) -> Result<TetMesh, MeshError>,
     [mut scale, largest]: [f64; 2],
@@ -436,7 +450,8 @@ impl GelMesh {
         &self.body
     }
 
-    /// Presses to the depths of a table, such as [`Gel::depths`], and shows the gel at each.
+    /// Presses to the depths of a table, such as [`Gel::depths`], and calls `show` with the gel at
+    /// each.
     #[must_use]
     pub fn depth_table(
         &self,
@@ -448,7 +463,8 @@ impl GelMesh {
         if let ([untouched, _, deeper @ ..], true) = (depths, history.frames.len() < 2)
             && !deeper.is_empty()
         {
-            // With friction, a first step that only an edge meets may find no equilibrium: the table starts a step deeper.
+            // With friction, a first step in which only an edge touches may have no equilibrium.
+            // The table then starts one step deeper.
             let depths = [&[*untouched], deeper].concat();
             history = self.press(place, &depths, show);
         }
@@ -462,7 +478,7 @@ impl GelMesh {
         }
     }
 
-    /// Presses along the keyframes and shows the gel at each.
+    /// Presses along the keyframes and calls `show` with the gel at each.
     fn press(
         &self,
         place: &PressPlace,
@@ -496,7 +512,7 @@ impl GelMesh {
                     failure = Some(format!("at {:.3} mm: {}", keyframe.depth_mm, reason(&error)));
                     let share = error.converged_fraction();
                     if share > 0.0 {
-                        // As deep as it goes.
+                        // Takes the last step as far as it converges.
                         let last = Keyframe {
                             time_s: before.time_s + share * time_step_s,
                             depth_mm: before.depth_mm + share * (keyframe.depth_mm - before.depth_mm),
@@ -514,12 +530,12 @@ impl GelMesh {
         }
     }
 
-    /// Force of the indenter on the gel along the robot's way down, N.
+    /// Force of the indenter on the gel along the robot's downward direction, N.
     fn force_n(&self, frame: &Frame) -> f64 {
         -frame.indenter_force_n.dot(self.upwards)
     }
 
-    /// The gel as a state of it is.
+    /// The fields of the gel in a state.
     pub(crate) fn fields<'a>(&'a self, state: &'a State) -> Fields<'a> {
         Fields {
             mesh: self.body.mesh(),
@@ -563,7 +579,7 @@ impl GelMesh {
 pub struct Fields<'a> {
     /// The mesh at rest.
     pub mesh: &'a TetMesh,
-    /// How far each node has moved, mm; `[n_nodes]`.
+    /// Displacement of each node, mm; `[n_nodes]`.
     pub displacements_mm: &'a [DVec3],
     /// Hydrostatic pressure -tr(σ)/3 at each node, kPa; `[n_nodes]`.
     pub pressure_kpa: Vec<f64>,

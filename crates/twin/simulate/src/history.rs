@@ -4,10 +4,10 @@ use twintac_depth_table::{PressFrame, SolveQuality};
 use twintac_shape::Pose;
 use twintac_softbody::Frame;
 
-/// Part of the largest force so far below which a table has no force: it ends before.
+/// A table ends before its force falls below this fraction of the largest force so far.
 pub const FORCE_MAY_FALL_TO: f64 = 0.9;
 
-/// Forces that are smaller may come and go, N.
+/// Forces below this one are ignored in that check, N.
 const LEAST_N: f64 = 0.02;
 
 /// A press along a trajectory in time.
@@ -17,12 +17,13 @@ pub struct PressHistory {
     pub gel_from_indenter_at_touch: Pose,
     /// A frame for each keyframe, up to the last one that was reached.
     pub frames: Vec<PressFrame>,
-    /// Why the frames end before the keyframes do; `None` if they do not.
+    /// Why the frames end before the keyframes do; `None` if they reach the last keyframe.
     pub failure: Option<String>,
 }
 
 impl PressHistory {
-    /// Ends a press of ever greater depth before its force falls: there the gel slides off, or has found a way past what presses.
+    /// Ends a press of increasing depth before its force falls: there the gel slides off the
+    /// indenter, or past it.
     pub(crate) fn end_where_force_falls(&mut self) {
         let mut most_n = 0.0;
         let falls = |frame: &PressFrame| {

@@ -1,11 +1,65 @@
-//! A sensor's gel, meshed and pressed by one of its indenters.
+//! A sensor's gel as a finite-element model, meshed for one press and pressed by one of the
+//! sensor's indenters.
 //!
-//! [`Gel`] turns a sensor description into presses: [`Gel::depth_table`] tabulates one place over depth, [`Gel::press`] follows a
-//! trajectory in time (for materials that relax), [`Gel::follow`] takes an indenter along any path, and a [`GelState`] is pressed frame by frame as poses
-//! come.
+//! In: a sensor description and [`SimulateSettings`], which together make a [`Gel`]. Out: the force
+//! of the indenter (N), and at each taxel the hydrostatic pressure averaged over the port (kPa),
+//! its derivatives with respect to the location and the radius of the port (kPa/mm), and the stress
+//! feature of the TwinTac paper (kPa/mm). Depths and positions are in mm, times in s.
 //!
-//! Each press gets a mesh of its own, fine under the indenter and mirrored about its axis: moving the press place moves the fine cells
-//! along, so that results at neighbouring places do not differ by where nodes lie.
+//! - [`Gel::depth_table`] presses one location to increasing depths and gives a table over depth.
+//! - [`Gel::press`] follows a trajectory in time, for materials that relax, and gives a
+//!   [`PressHistory`].
+//! - [`Gel::follow`] takes an indenter along any path and gives [`FollowedFrame`]s.
+//! - [`Gel::state_along`] gives a [`GelState`], which is pressed frame by frame as poses come.
+//! - [`Gel::press_with_rates`] also gives the derivatives of a press with respect to constants of
+//!   the material.
+//!
+//! The crate does not depend on recordings, on learning or on the emulated bench: a twin and the
+//! emulator share the solver, but neither settings, nor material, nor mesh.
+//!
+//! # How it works
+//!
+//! **Tables over depth.** The state of an elastic gel without friction depends on the depth alone,
+//! not on what happened before. A location is therefore simulated once, as a table over depth
+//! (crate `twintac-depth-table`). Every press at that location is interpolated from the table,
+//! whatever its speed and its holds. Force-controlled, static data read the same table by force
+//! instead of by depth. With friction, a table holds for loading only; a path ([`Gel::follow`])
+//! keeps the history. What real gels and ports do over time is not simulated here: the twin learns
+//! it (crate `digitac`).
+//!
+//! **One mesh for each press.** The mesh is fine under the indenter and mirrored about the
+//! indenter's axis. When the location of the press moves, the fine cells move along. Results at
+//! neighbouring locations then differ by physics and not by the positions of nodes. A path that
+//! slides is meshed finely all along. A punch (an indenter with a rim) is meshed finely at its rim,
+//! where its force arises: for tables, which are many, about half as finely as for a path. By
+//! default a path may have about 20,000 nodes ([`SimulateSettings::max_path_nodes`]); in real time
+//! on two cores it can have about 7,000.
+//!
+//! **Elements.** The pressure is linear on a coarse mesh. Displacements are linear on the mesh that
+//! results when each coarse tetrahedron is cut into eight (P1-iso-P2/P1; quadratic displacements on
+//! the same nodes exist for reference). With plain linear tetrahedra, the pressure of a nearly
+//! incompressible gel is wrong by a factor of two to five, and this pressure is what a barometer
+//! reads. The coarse mesh therefore has to be fine where pressures are read.
+//!
+//! **What is rigid.** Chips in the gel are bonded to it. Each wall of a shell around the gel is an
+//! obstacle of its own.
+//!
+//! **Where tables end.** A table or a path that cannot be solved to its end is not an error: it
+//! ends at the last converged frame and gives the reason. A table also ends before the force falls
+//! below [`FORCE_MAY_FALL_TO`] of its largest value, because there the gel slides off the indenter.
+//!
+//! ```text
+//! gel       a sensor's gel: first touch, mesh, tables over depth, presses in time
+//! follow    an indenter along a path; walk: from one frame to the next, by pose or by force
+//! state     a gel that is pressed frame by frame
+//! rates     a press with its derivatives
+//! touch     the pose of first touch, and the radius of the contact
+//! rounding  the radii of an indenter's edges, which determine the length of mesh edges at its rim
+//! shell     the rigid walls around a gel
+//! readout   pressures at ports, and the stress feature
+//! history   the result of a press in time, and where it ends
+//! source    a gel as a source of tables over depth
+//! ```
 
 mod error;
 mod follow;

@@ -1,4 +1,5 @@
-//! A press with its derivatives with respect to the constants of the gel's material and the position of the indenter.
+//! A press with its derivatives with respect to constants of the gel's material and to the position
+//! of the indenter.
 
 use glam::DVec3;
 use twintac_shape::Pose;
@@ -6,7 +7,7 @@ use twintac_softbody::Direction;
 
 use crate::{GelMesh, Keyframe, SimulateError};
 
-/// One moment of a press, and its derivatives along each direction asked for.
+/// One moment of a press, and its derivatives along each requested direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RatedFrame {
     /// Time, s.
@@ -15,19 +16,21 @@ pub struct RatedFrame {
     pub depth_mm: f64,
     /// Force of the indenter on the gel along -z, N.
     pub force_n: f64,
-    /// Rates of the force, N over the unit of the direction's parameter; `[n_directions]`.
+    /// Derivatives of the force, N per unit of the direction's parameter; `[n_directions]`.
     pub force_rates_n: Vec<f64>,
     /// Hydrostatic pressure -tr(σ)/3, averaged over each taxel's port, kPa; `[n_taxels]`.
     pub port_pressure_kpa: Vec<f64>,
-    /// Rates of the pressures, kPa over the unit of the direction's parameter; `[n_directions][n_taxels]`.
+    /// Derivatives of the pressures, kPa per unit of the direction's parameter;
+    /// `[n_directions][n_taxels]`.
     pub port_pressure_rates_kpa: Vec<Vec<f64>>,
 }
 
 impl GelMesh {
-    /// Presses along the keyframes, all of them `deeper_mm` deeper than they say. Unlike a table, a press that fails is an error.
+    /// Presses along the keyframes, each of them `deeper_mm` deeper than given. Unlike in a table,
+    /// a press that fails is an error.
     ///
     /// # Errors
-    /// A direction for another material, and a keyframe that can't be reached.
+    /// A direction for another material, or a keyframe that cannot be reached.
     pub fn press_with_rates(
         &self,
         keyframes: &[Keyframe],

@@ -1,4 +1,5 @@
-//! The quantities computed at each taxel of a pressed gel: the pressure at its port, and the stress feature of the TwinTac paper.
+//! The quantities computed at each taxel of a pressed gel: the pressure at its port, and the stress
+//! feature of the TwinTac paper.
 
 use glam::{DVec2, DVec3};
 use twintac_mesh::TetMesh;
@@ -9,26 +10,27 @@ use crate::SimulateError;
 /// Rings of samples on a port's disc.
 const RINGS: u32 = 3;
 
-/// A port may lie this far outside the mesh (rounded off by linear facets), mm.
+/// How far a port may lie outside the mesh, whose linear facets cut off round parts, mm.
 const PORT_TOLERANCE_MM: f64 = 0.05;
 
-/// Weights of nodes, so that a nodal field is read at a port as a sum.
+/// Weights of nodes that give the mean of a nodal field over a port.
 #[derive(Clone, Debug)]
 pub struct PortReadout {
     weights: Vec<(usize, f64)>,
 }
 
 impl PortReadout {
-    /// The port of a taxel, on a mesh.
+    /// The port of a taxel on a mesh.
     ///
     /// # Errors
-    /// A port that is not in the mesh.
+    /// A port that is outside of the mesh.
     pub fn of_taxel(mesh: &TetMesh, taxel: &Taxel) -> Result<Self, SimulateError> {
         Self::new(mesh, &taxel.name, taxel.position_mm, taxel.port_radius_mm)
     }
 
-    /// Samples a disc (normal z) at points of equal area and spreads each over its tetrahedron's nodes. What of the disc lies beside the gel, which
-    /// presses on none of it, is left out.
+    /// Samples a disc (normal z) at points of equal area and distributes each over its
+    /// tetrahedron's nodes. Parts of the disc beside the gel are left out, because no gel presses
+    /// on them.
     pub(crate) fn new(
         mesh: &TetMesh,
         name: &str,
@@ -66,13 +68,14 @@ impl PortReadout {
     }
 }
 
-/// How far a port is moved, and its radius changed, to see how its pressure changes, mm.
+/// Step of the location and of the radius of a port for its pressure derivatives, mm.
 const SLOPE_STEP_MM: f64 = 0.25;
 
-/// How a port's pressure changes with its place along x, along y and with its radius.
+/// Derivatives of a port's pressure with respect to its x, y and radius.
 #[derive(Clone, Debug)]
 pub(crate) struct PortSlopes {
-    /// The port a step behind and a step ahead each way; `None` where the mesh ends before.
+    /// The port one step behind and one step ahead for x, y and radius; `None` where the mesh ends
+    /// before.
     ways: [Option<[PortReadout; 2]>; 3],
 }
 
@@ -107,13 +110,15 @@ impl PortSlopes {
     }
 }
 
-/// Centres of cells of equal area on a disc: one in the middle, 8 in the first ring around it, 16 in the next.
+/// Centres of cells of equal area on a disc: one in the middle, 8 in the first ring around it, 16
+/// in the next.
 fn disc_samples(radius_mm: f64) -> Vec<DVec2> {
     let mut samples = vec![DVec2::ZERO];
     let rings = f64::from(2 * RINGS - 1);
     for ring in 1..RINGS {
         let count = 8 * ring;
-        // The root mean square radius of the ring's cells, so that the second moment is the disc's.
+        // The root mean square radius of the ring's cells, so that the second moment is that of the
+        // disc.
         let distance_mm = radius_mm * f64::from(4 * ring * ring + 1).sqrt() / rings;
         samples.extend((0..count).map(|i| {
             let angle = std::f64::consts::TAU * (f64::from(i) + 0.5) / f64::from(count);
@@ -130,8 +135,9 @@ pub(crate) struct StressCluster {
 }
 
 impl StressCluster {
-    /// Nodes of the pressed surface that are closer (in plan) to this taxel than to any other and within half the pitch of it along
-    /// x and y, weighted by their share of the surface, so that a graded mesh gives what a uniform one would.
+    /// Nodes of the pressed surface that are closer (in plan) to this taxel than to any other, and
+    /// within half the pitch of it along x and y. They are weighted by their share of the surface,
+    /// so that a graded mesh gives what a uniform one would.
     pub(crate) fn for_each_taxel(mesh: &TetMesh, sensor: &Sensor) -> Vec<Self> {
         let areas_mm2 = mesh.node_areas_mm2();
         let plan: Vec<DVec2> = sensor
@@ -163,7 +169,8 @@ impl StressCluster {
         clusters
     }
 
-    /// The feature, kPa/mm: mean over the cluster of von Mises stress over the distance to the taxel (arXiv 2509.10063, equation 6).
+    /// The feature, kPa/mm: the mean over the cluster of von Mises stress over distance to the
+    /// taxel (arXiv 2509.10063, equation 6).
     pub(crate) fn read(&self, von_mises_kpa: &[f64], positions_mm: &dyn Fn(usize) -> DVec3) -> f64 {
         let area_mm2: f64 = self.nodes.iter().map(|&(_, area)| area).sum();
         if area_mm2 == 0.0 {
@@ -185,7 +192,7 @@ fn smallest_distance_mm(points: &[DVec2]) -> f64 {
             smallest = smallest.min(a.distance(*b));
         }
     }
-    // A lone taxel has the whole surface above it.
+    // A single taxel has the whole surface above it.
     smallest
 }
 
@@ -198,7 +205,7 @@ mod tests {
         let samples = disc_samples(2.0);
         let mean: DVec2 = samples.iter().sum::<DVec2>() / samples.len() as f64;
         assert!(mean.length() < 1e-12);
-        // Mean square radius of a disc is r²/2.
+        // The mean square radius of a disc is r²/2.
         let square = samples.iter().map(|s| s.length_squared()).sum::<f64>() / samples.len() as f64;
         assert!((square - 2.0).abs() < 0.01, "{square}");
     }

@@ -1,4 +1,5 @@
-//! How round an indenter is where it presses: the rims of punches are rounded, and the mesh needs short edges there.
+//! Radii of curvature of an indenter where it presses. The rims of punches are rounded, and the
+//! mesh needs short edges there.
 
 use glam::{DVec2, DVec3};
 use twintac_mesh::Stretch;
@@ -9,18 +10,21 @@ use crate::touch::underside_mm;
 /// Samples on each side of the touched point, along each axis.
 const SAMPLES: i32 = 30;
 
-/// Half the distance between the points at which the turn of a surface is measured, mm: sharper edges are not resolved.
+/// Half the distance between the points at which the change of a surface's normal is measured, mm.
+/// Sharper edges are not resolved.
 const STEP_MM: f64 = 0.05;
 
 /// Smallest radius of curvature of an indenter's underside along x and along y.
 pub(crate) struct Roundings {
     step_mm: f64,
-    /// At places a step apart along the axis, the touched point in the middle.
+    /// At locations one step apart along each axis, the touched point in the middle;
+    /// `[2 * SAMPLES + 1]`.
     radius_mm: [Vec<f64>; 2],
 }
 
 impl Roundings {
-    /// Samples the underside within a radius about the touched point, as far as a press of this depth brings it below the surface.
+    /// Samples the underside within a radius about the touched point, where a press of this depth
+    /// brings it below the surface.
     pub(crate) fn of(
         indenter: &dyn SignedDistance,
         touch: &Pose,
@@ -59,7 +63,8 @@ impl Roundings {
         Self { step_mm, radius_mm }
     }
 
-    /// Where so many edges over a radius are shorter than `edge_mm`; none are shorter than `shortest_mm`.
+    /// Stretches along x and along y where `edges_per_radius` edges over the radius of curvature
+    /// are shorter than `edge_mm`. No edge gets shorter than `shortest_mm`.
     pub(crate) fn stretches(
         &self,
         edges_per_radius: f64,

@@ -8,22 +8,30 @@ use twintac_softbody::SolverSettings;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SimulateSettings {
-    /// Edges over the gel's height, away from the indenter; the pressure has half as many.
+    /// Number of edges over the gel's height, away from the indenter. The pressure has half as
+    /// many.
     pub edges_per_height: f64,
-    /// Edges across the radius of the contact at full depth; never longer than away from the indenter, nor shorter than a 20th of those. The pressure has half as many.
+    /// Number of edges across the radius of the contact at full depth. These edges are never longer
+    /// than those away from the indenter, and never shorter than a 20th of them. The pressure has
+    /// half as many.
     pub edges_per_contact_radius: f64,
-    /// Length of the edges under the indenter, mm, instead of `edges_per_contact_radius`; within the same limits.
+    /// Length of the edges under the indenter, mm, instead of `edges_per_contact_radius`; within
+    /// the same limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_edge_mm: Option<f64>,
-    /// Largest number of nodes of the mesh for a table. If the requested edges give more, all edges are made longer.
+    /// Largest number of nodes of the mesh for a table. If the requested edges give more, all edges
+    /// are made longer.
     pub max_nodes: usize,
-    /// Number of nodes of the mesh for a path, which bounds its computing time: edges are made shorter or longer than requested to come close
-    /// to it. Meshes that are refined at the indenter's rim get two thirds more.
+    /// Number of nodes of the mesh for a path, which bounds its computing time. Edges are made
+    /// shorter or longer than requested to come close to it. Meshes that are refined at the
+    /// indenter's rim may have 60 % more.
     pub max_path_nodes: usize,
-    /// Edges over the radius to which an indenter is rounded, where that makes them shorter than elsewhere, but not shorter than half of those under the
-    /// rest of it, for a path three tenths: the force of a punch comes from its rim. The pressure has half as many.
+    /// Number of edges over the radius to which an indenter's rim is rounded, because the force of
+    /// a punch comes from its rim. It counts only where it makes edges shorter than elsewhere. The
+    /// edges at a rim are not shorter than half of those under the rest of the indenter, or three
+    /// tenths for a path. The pressure has half as many.
     pub edges_per_rounding: f64,
-    /// Mean distance of a table's frames over depth, mm. Shallow tables have five.
+    /// Mean distance between a table's frames over depth, mm. A table has at least five steps.
     pub depth_step_mm: f64,
     /// The solver's own settings.
     pub solver: SolverSettings,
@@ -54,7 +62,8 @@ impl Checked for SimulateSettings {
     }
 }
 
-/// The solver's settings, as people write them: those that it takes, and that end in some time.
+/// The solver's settings as users write them. The accepted ranges are those that the solver takes
+/// and that end in a finite time.
 struct Solver<'a>(&'a SolverSettings);
 
 impl Checked for Solver<'_> {
@@ -83,10 +92,11 @@ impl Checked for Solver<'_> {
 }
 
 impl SimulateSettings {
-    /// Frames of the shallowest table, after the untouched one.
+    /// Smallest number of frames of a table, without the untouched one.
     pub(crate) const MIN_DEPTH_STEPS: f64 = 5.0;
 
-    /// For single presses that are looked at closely: twice as long as the default, which is for tables that a twin is trained on.
+    /// For single presses that are examined closely. They take twice as long as with the default,
+    /// which is for the tables that a twin is trained on.
     #[must_use]
     pub fn fine() -> Self {
         Self {
@@ -114,7 +124,8 @@ impl Default for SimulateSettings {
             depth_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-3,
-                // A table that ends a little early costs less than the search for where exactly it has to.
+                // A table that ends a little early costs less than the search for the exact depth
+                // at which it has to end.
                 max_iterations: 40,
                 min_substep: 0.25,
                 ..SolverSettings::default()

@@ -1,5 +1,6 @@
-//! The rigid shell around a gel, as four walls. One shape for all of them would have hollow corners, where the direction of the nearest
-//! wall jumps and the contact iteration does not converge; with four walls, a node in a corner touches two at once.
+//! The rigid shell around a gel, as four walls. A single shape for all walls would have concave
+//! corners, where the direction to the nearest wall jumps and the contact iteration does not
+//! converge. With four walls, a node in a corner touches two of them at once.
 
 use glam::{DVec2, DVec3};
 use twintac_shape::{Distance, SignedDistance};
@@ -10,9 +11,9 @@ const RIM_RADIUS_MM: f64 = 0.5;
 /// A wall of infinite width and thickness, up to a height.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wall {
-    /// From the wall to the gel, in the gel's plane.
+    /// Unit vector from the wall to the gel, in the gel's plane.
     inwards: DVec2,
-    /// Where the wall stands, against `inwards` from the origin, mm.
+    /// Position of the wall: distance from the origin against `inwards`, mm.
     offset_mm: f64,
     height_mm: f64,
     rim_radius_mm: f64,
@@ -39,7 +40,7 @@ impl Wall {
 impl SignedDistance for Wall {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
         let inwards = self.inwards.extend(0.0);
-        // From a wall that is smaller by the rim's radius.
+        // Distance from a wall that is smaller by the rim's radius.
         let beside_mm = inwards.dot(point_mm) + self.offset_mm + self.rim_radius_mm;
         let above_mm = point_mm.z - self.height_mm + self.rim_radius_mm;
         let (from_inner_mm, gradient) = if beside_mm > 0.0 && above_mm > 0.0 {
@@ -80,7 +81,8 @@ mod tests {
             ([0.0, -4.5, 0.0], 0.5, DVec3::Y),
             ([9.0, 0.0, 2.0], -1.0, DVec3::NEG_X),
             ([20.0, 0.0, 6.0], 1.0, DVec3::Z),
-            // A sharp rim would be here: rounded by 0.5 mm it is (√2 - 1)/2 away.
+            // The point lies where a sharp rim would be: the rim rounded by 0.5 mm is (√2 - 1)/2
+            // away.
             (
                 [8.0, 0.0, 5.0],
                 sqrt_half - 0.5,

@@ -7,7 +7,7 @@ use twintac_shape::{Pose, Shape, Underside};
 use crate::{Gel, PressPlace, SimulateError};
 
 impl Gel {
-    /// The press that a request stands for.
+    /// The press that a request describes.
     ///
     /// # Errors
     /// [`SimulateError::NoIndenter`].
@@ -28,10 +28,10 @@ impl Gel {
         })
     }
 
-    /// The underside of a shape, turned as it presses.
+    /// The underside (contact geometry) of a shape, rotated as it presses.
     ///
     /// # Errors
-    /// A surface that the sensor's description does not have.
+    /// A surface that is not in the sensor's description.
     pub fn underside(&self, shape: &Shape, rotation: DQuat) -> Result<Underside, SimulateError> {
         let shape = shape.signed_distance_field(&self.sensor().surfaces)?;
         Ok(Underside::of(shape.as_ref(), rotation))
@@ -57,7 +57,7 @@ impl Gel {
     }
 }
 
-/// Simulates one table after the other.
+/// Simulates one table after another.
 impl DepthTableSource for Gel {
     fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
         Ok(Self::touch(self, self.shape(indenter)?, above)?)

@@ -10,24 +10,28 @@ use crate::readout::PortReadout;
 use crate::walk::Walk;
 use crate::{Fields, FollowedFrame, Gel, SimulateError};
 
-/// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. It keeps how it is deformed, what its material remembers, and where friction
-/// holds it.
+/// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. It keeps
+/// its deformation, the history variables of its material, and the locations where friction holds
+/// it.
 pub struct GelState {
     walk: Walk,
-    /// Ports of the taxels, then points, by name.
+    /// Ports of the taxels, then the points of the path, each with its name.
     ports: Vec<(String, PortReadout)>,
-    /// Height of the indenter's origin at first touch, at the place and turn of the first pose, mm.
+    /// Height of the indenter's origin at first touch, at the location and rotation of the first
+    /// pose, mm.
     touch_mm: f64,
     reads_stress: bool,
-    /// The largest force that the sensor stands, N.
+    /// The largest force that the sensor withstands, N.
     limit_n: Option<f64>,
 }
 
 impl Gel {
-    /// The gel before an indenter is taken along a path. The mesh is fine wherever the path presses.
+    /// The gel at rest, before an indenter is taken along a path. The mesh is fine wherever the
+    /// path presses.
     ///
     /// # Errors
-    /// Those of [`Gel::mesh`]; a point outside the gel, or with the name of a taxel; a force that the sensor does not stand.
+    /// Those of [`Gel::mesh`]; a point outside the gel, or with the name of a taxel; a force above
+    /// the sensor's limit.
     pub fn state_along(&self, shape: &Shape, path: &PressPath) -> Result<GelState, SimulateError> {
         let limit_n = self.sensor().limits.map(|limits| limits.force_n);
         for force_n in path.poses.iter().filter_map(|pose| pose.force_n) {
@@ -36,7 +40,7 @@ impl Gel {
         let rough = self.rough_for(&path.indenter);
         let first = rough.frames(shape, path)?[0].pose;
         let touch_mm = rough.touch(shape, &first)?.position_mm.z;
-        // Somebody waits for this one press.
+        // Two threads, because the caller waits for this single press.
         let gel = rough.mesh_along(shape, path)?.on_two_threads();
         let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
         let mut ports: Vec<(String, PortReadout)> = taxels.zip(gel.ports.iter().cloned()).collect();
@@ -59,7 +63,8 @@ impl Gel {
     }
 }
 
-/// Whether a force is within what the sensor stands. What is far beyond is looked for until the gel is flat, which takes minutes.
+/// An error if a force is above the sensor's limit. A search for a force far above it goes on until
+/// the gel is flat, which takes minutes.
 fn stands(limit_n: Option<f64>, force_n: f64) -> Result<(), SimulateError> {
     match limit_n.filter(|limit_n| force_n > *limit_n) {
         Some(limit_n) => Err(SimulateError::ForceLimit { force_n, limit_n }),
@@ -68,10 +73,12 @@ fn stands(limit_n: Option<f64>, force_n: f64) -> Result<(), SimulateError> {
 }
 
 impl GelState {
-    /// One more frame, `since_previous_s` after the last: the indenter is taken to a pose, evenly on a straight way. The first frame takes no notice of the time.
+    /// One more frame, `since_previous_s` after the last: the indenter moves to a pose at constant
+    /// speed on a straight line. The first frame ignores the time.
     ///
     /// # Errors
-    /// [`SimulateError::Press`]: the solver finds no equilibrium. The gel is then as it was.
+    /// [`SimulateError::Press`]: the solver finds no equilibrium. The gel keeps the state that it
+    /// had before.
     pub fn step(
         &mut self,
         since_previous_s: f64,
@@ -80,10 +87,12 @@ impl GelState {
         self.step_to(since_previous_s, gel_from_indenter, None)
     }
 
-    /// The same to where the indenter presses with a force straight down, N, above 0: the pose, moved up or down by at most the gel's height.
+    /// As [`step`](Self::step), to where the indenter presses straight down with a force, N,
+    /// above 0. The pose is moved up or down for this by at most the gel's height.
     ///
     /// # Errors
-    /// As [`step`](Self::step); a force that is not met, or that the sensor does not stand.
+    /// As for [`step`](Self::step); also a force that is not reached, or that is above the sensor's
+    /// limit.
     pub fn step_to_force(
         &mut self,
         since_previous_s: f64,
@@ -94,12 +103,12 @@ impl GelState {
         self.step_to(since_previous_s, gel_from_indenter, Some(force_n))
     }
 
-    /// Lets go of the gel: it is at rest, and remembers nothing.
+    /// Releases the gel: it is at rest, without any history.
     pub fn rest(&mut self) {
         self.walk.rest();
     }
 
-    /// Where the indenter is; nowhere before the first frame.
+    /// The indenter's pose; `None` before the first frame.
     #[must_use]
     pub fn gel_from_indenter(&self) -> Option<Pose> {
         self.walk.pose()
@@ -123,13 +132,14 @@ impl GelState {
         })
     }
 
-    /// Height of the indenter's origin at first touch, at the place and turn of the path's first pose, mm: depths count from there.
+    /// Height of the indenter's origin at first touch, at the location and rotation of the path's
+    /// first pose, mm. Depths count from there.
     #[must_use]
     pub fn touch_mm(&self) -> f64 {
         self.touch_mm
     }
 
-    /// The gel as it is now: its mesh, how that is moved, and what is felt at its nodes.
+    /// The gel as it is now: its mesh, the displacements, and the stresses at its nodes.
     #[must_use]
     pub fn fields(&self) -> Fields<'_> {
         self.walk.gel.fields(&self.walk.state)

@@ -1,16 +1,18 @@
-//! Where an indenter first touches the undeformed gel, and how wide it will press.
+//! Where an indenter first touches the undeformed gel, and the radius of its contact.
 
 use glam::{DVec2, DVec3};
 use twintac_shape::{Pose, SignedDistance};
 
-/// Samples along each axis of the search; the second search refines about the first one's best.
+/// Samples along each axis of the search. The second search refines around the best sample of the
+/// first one.
 const SAMPLES: i32 = 40;
 
-/// Heights that differ by less than this are the same, mm.
+/// Heights that differ by less than this count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
-/// The pose at which an indenter, coming straight down above `(x_mm, y_mm)`, touches the gel, together with the touched point.
-/// `top_height_mm` gives the gel's top, `None` beside it. `None` if the indenter misses the gel.
+/// The pose at which an indenter that moves straight down above `(x_mm, y_mm)` touches the gel,
+/// with the touched point. `top_height_mm` gives the height of the gel's top, `None` beside the
+/// gel. `None` if the indenter misses the gel.
 pub(crate) fn first_touch(
     indenter: &dyn SignedDistance,
     at_origin: &Pose,
@@ -26,7 +28,7 @@ pub(crate) fn first_touch(
         reach_mm / f64::from(SAMPLES),
         reach_mm / f64::from(SAMPLES * SAMPLES),
     ] {
-        // Of all points that touch at once, such as those under a flat punch, the middle.
+        // Of all points that touch at once, such as those under a flat punch, the middle counts.
         let (mut sum, mut count) = (DVec2::ZERO, 0.0);
         for i in -SAMPLES..=SAMPLES {
             for j in -SAMPLES..=SAMPLES {
@@ -35,7 +37,7 @@ pub(crate) fn first_touch(
                 let Some(height_mm) = top_height_mm(point.x, point.y) else {
                     continue;
                 };
-                // No underside above this touches earlier than the best so far.
+                // No underside above this height touches earlier than the best so far.
                 let ceiling_mm = (height_mm - best_mm + SAME_HEIGHT_MM).min(1.5 * reach_mm);
                 let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm, ceiling_mm) else {
                     continue;
@@ -63,8 +65,8 @@ pub(crate) fn first_touch(
     })
 }
 
-/// Height of the indenter's underside above its origin at a place in the gel's plane, mm; `None` beside the indenter, and where it is
-/// above the ceiling.
+/// Height of the indenter's underside above its origin at a location in the gel's plane, mm. `None`
+/// beside the indenter, and where the underside is above the ceiling.
 pub(crate) fn underside_mm(
     indenter: &dyn SignedDistance,
     pose: &Pose,
@@ -89,11 +91,13 @@ pub(crate) fn underside_mm(
             return None;
         }
     }
-    // Rays that graze the side creep; what is not hit by now touches later than its neighbours.
+    // Rays that graze a side advance slowly. What is not hit by now touches later than its
+    // neighbours.
     None
 }
 
-/// Radius in the gel's plane, about the touched point, of the indenter's part that a press of this depth brings below the surface, mm.
+/// Radius in the gel's plane, about the touched point, of the part of the indenter that a press of
+/// this depth brings below the surface, mm.
 pub(crate) fn contact_radius_mm(
     indenter: &dyn SignedDistance,
     gel_from_indenter_at_touch: &Pose,
@@ -102,7 +106,7 @@ pub(crate) fn contact_radius_mm(
 ) -> f64 {
     let (low, high) = indenter.bounds_mm();
     let reach_mm = low.abs().max(high.abs()).length();
-    // A plate may have gone wholly below the surface, so that it is sought at all heights.
+    // A plate may lie wholly below the surface, so it is searched for at all heights.
     let goes_below = |place: DVec3| {
         let mut above_mm = 0.0;
         while above_mm <= depth_mm {

@@ -1,4 +1,4 @@
-//! An indenter in a gel, taken from one moment to the next.
+//! An indenter in a gel, moved from one frame to the next.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use twintac_softbody::{Frame, Push, SolveError, State};
 
 use crate::GelMesh;
 
-/// A gel, and the indenter that is taken through it.
+/// A gel, and the indenter that is moved through it.
 pub(crate) struct Walk {
     pub(crate) gel: GelMesh,
     pub(crate) state: State,
@@ -18,7 +18,7 @@ pub(crate) struct Walk {
     deadline: Option<Duration>,
     /// Time of the last frame, s.
     time_s: Option<f64>,
-    /// How far beyond its pose the indenter was at the last frame of prescribed force, mm.
+    /// How far the indenter was beyond its pose at the last frame of prescribed force, mm.
     beyond_mm: f64,
     /// Force along the direction at the last frame of prescribed pose, N.
     force_n: f64,
@@ -38,14 +38,14 @@ impl Walk {
         }
     }
 
-    /// The same walk, whose frames are answered within a wall time.
+    /// The same walk with a wall time for each frame.
     pub(crate) fn within(mut self, deadline: Option<Duration>) -> Self {
         self.deadline = deadline;
         self.state.answer_within(deadline);
         self
     }
 
-    /// Lets go of the gel: nothing presses it, and it remembers nothing.
+    /// Releases the gel: nothing presses it, and it has no history.
     pub(crate) fn rest(&mut self) {
         self.state = self.gel.body.rest();
         self.state.answer_within(self.deadline);
@@ -57,7 +57,7 @@ impl Walk {
         self.time_s.unwrap_or(0.0)
     }
 
-    /// Where the indenter is.
+    /// The indenter's pose; `None` before the first frame.
     pub(crate) fn pose(&self) -> Option<Pose> {
         self.state.gel_from_indenter()
     }

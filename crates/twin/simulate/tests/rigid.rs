@@ -1,4 +1,5 @@
-//! What is rigid in and around a gel: chips that it is bonded to, and a shell that stops both gel and indenter.
+//! Rigid parts in and around a gel: chips that are bonded to it, and a shell that stops both gel
+//! and indenter.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -12,7 +13,7 @@ use twintac_shape::Pose;
 use twintac_simulate::{Followed, Gel, PressPlace, SimulateSettings};
 use twintac_softbody::{Blocker, SolveError};
 
-/// A sensor of a block of this height, with more tables.
+/// A sensor with a block of this height, and with further TOML tables.
 fn sensor(height_mm: f64, more: &str) -> Arc<Sensor> {
     let text = format!(
         r#"
@@ -146,7 +147,8 @@ fn the_gel_holds_on_to_a_chip_and_the_chip_stops_the_indenter() {
 #[test]
 fn an_indenter_over_the_shells_edge_is_blocked() {
     let gel = gel(sensor(8.0, SHELL), 1e-4);
-    // The rim's circle of 0.5 mm has its middle at x = 10.7 mm, z = 7.5 mm: the ball meets it where its own middle is 3.5 mm from there.
+    // The centre of the rim's circle of 0.5 mm is at x = 10.7 mm, z = 7.5 mm. The ball touches it
+    // where its own centre is 3.5 mm from there.
     let x_mm = 8.5;
     let place = place(&gel, "ball", x_mm, 2.0);
     let table = gel.depth_table(&place).unwrap();
@@ -208,7 +210,8 @@ fn bounded_penetration_hardly_changes_the_force() {
     for ((depth_mm, usual_n), (_, exact_n)) in forces[0].iter().zip(&forces[1]).skip(1) {
         let change = usual_n / exact_n - 1.0;
         println!("{depth_mm:.3} mm: {usual_n:.4} N, {:+.3} %", 100.0 * change);
-        // Depth 0.005 mm less, at most, of a force that rises with its power 1.5 or so.
+        // The depth is at most 0.005 mm less, and the force rises with about the power 1.5 of
+        // depth.
         assert!(change.abs() < 2.0 * 0.005 / depth_mm);
     }
 }
@@ -241,7 +244,7 @@ poses = [
         assert!((found[0] - wanted_n).abs() <= 1e-3 * wanted_n);
     }
     let held_mm = found[2][1];
-    // Up again evenly from where the force had brought it.
+    // The indenter moves up at constant speed from where the force had brought it.
     assert!((found[7][1] - (0.5 * held_mm - 0.25)).abs() < 0.01 * held_mm);
     assert!(found[8][0] == 0.0 && (found[8][1] + 0.5).abs() < 1e-9);
     let driven = format!(
@@ -262,5 +265,5 @@ poses = [
     let out_of_reach = follow(&gel, &far);
     let failure = out_of_reach.failure.unwrap();
     println!("{failure}");
-    assert!(failure.contains("is not met within 1 mm"));
+    assert!(failure.contains("is not reached within 1 mm"));
 }

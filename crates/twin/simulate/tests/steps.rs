@@ -1,4 +1,4 @@
-//! A press is the same in few steps as in many.
+//! A press has the same result in few steps as in many.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -12,7 +12,8 @@ use twintac_simulate::{Gel, SimulateSettings};
 
 const DEPTH_MM: f64 = 1.2;
 
-/// The force of a shape that is pressed in so many steps, at once and held for three frames, N.
+/// The force of a shape that is pressed in so many steps, at once and after a hold of three frames,
+/// N.
 fn forces_n(gel: &Gel, indenter: &str, n_steps: u32) -> [f64; 2] {
     let pose = |depth_mm: f64| Pose::from_position(DVec3::new(-1.0, 0.5, gel.height_mm() - depth_mm));
     let path = PressPath::through(indenter, [(0.0, pose(0.0)), (1.0, pose(DEPTH_MM))]);

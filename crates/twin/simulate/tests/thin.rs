@@ -1,4 +1,5 @@
-//! Plates, walls, cavities and unions: gel does not slip through what is thinner than a press is deep, or it is said.
+//! Plates, walls, cavities and unions: gel does not slip through parts that are thinner than a
+//! press is deep, or an error says so.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
@@ -37,7 +38,7 @@ fn press(gel: &Gel, shape: Shape, depth_mm: f64) -> DepthTable {
     table
 }
 
-/// The force of a press that arrives, N.
+/// The force of a press that reaches its depth, N.
 fn force_n(gel: &Gel, shape: Shape, depth_mm: f64) -> f64 {
     let table = press(gel, shape, depth_mm);
     assert_eq!(table.failure, None);
@@ -48,7 +49,7 @@ fn gel(settings: SimulateSettings) -> Gel {
     gel_with(&[], settings)
 }
 
-/// A gel that knows a surface as `body.stl`.
+/// A gel with a surface named `body.stl`.
 fn gel_with(triangles: &[[DVec3; 3]], settings: SimulateSettings) -> Gel {
     let mut sensor = Sensor::read("../../../sensors/phystac.toml").unwrap();
     if !triangles.is_empty() {
@@ -69,7 +70,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Triangles {
     prism(&corners, [low[2], high[2]])
 }
 
-/// An upright prism on a polygon whose middle sees all of it, counterclockwise.
+/// An upright prism on a polygon that is star-shaped about its middle; corners counterclockwise.
 fn prism(corners: &[DVec2], [low_mm, high_mm]: [f64; 2]) -> Triangles {
     let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
     let ends = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -106,7 +107,8 @@ fn ring(wall_mm: f64) -> Shape {
 #[test]
 fn a_plate_presses_like_a_block_also_below_the_surface() {
     let coarse = gel(SimulateSettings::fine());
-    // Deeper, rows of nodes slide around the rim one after the other: earlier here, later there.
+    // At greater depths, rows of nodes slide around the rim one after another, at different depths
+    // on the two shapes.
     let fine = gel(SimulateSettings {
         contact_edge_mm: Some(0.5),
         ..SimulateSettings::fine()
@@ -243,7 +245,7 @@ fn a_thin_flange_below_a_web_does_not_pass_a_node_in_a_step() {
 #[test]
 fn walls_of_a_cup_are_walls() {
     let cup = |wall_mm: f64| {
-        // Slightly apart in height, so that no two faces lie in each other.
+        // The walls differ slightly in height, so that no two faces lie in each other.
         let wall = |low: [f64; 2], high: [f64; 2], lift_mm: f64| {
             cuboid([low[0], low[1], lift_mm], [high[0], high[1], 6.0 - lift_mm])
         };
@@ -301,7 +303,8 @@ fn force_rises_evenly_while_gel_slides_around_rims() {
     }
 }
 
-/// Edges as short as a pin wants are too many, and some are too flat; both end before a mesh is taken.
+/// A pin asks for edges so short that there are too many, and for cells so flat that they are
+/// invalid. Both are settled before a mesh is accepted.
 #[test]
 fn pins_and_blades_are_meshed_anywhere_with_as_many_nodes_as_are_allowed() {
     let settings = SimulateSettings {

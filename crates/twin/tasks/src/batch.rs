@@ -29,8 +29,8 @@ pub struct Tasks {
 }
 
 impl Tasks {
-    /// So many environments for so many threads. The seed of environment `n` is `n` until [`Self::seed`] gives it another. In each episode an environment has another sensor, drawn
-    /// from the imperfection.
+    /// Environments, distributed over threads. The seed of environment `n` is `n` until
+    /// [`Self::seed`] sets another. Each episode has another sensor, drawn from `imperfection`.
     ///
     /// # Errors
     /// No environment, or more than [`most_sensors`].
@@ -89,38 +89,39 @@ impl Tasks {
         self.n_environments
     }
 
-    /// Numbers of an observation, each from -10 to 10.
+    /// Length of an observation; each number is from -10 to 10.
     #[must_use]
     pub fn n_observed(&self) -> usize {
         self.n_observed
     }
 
-    /// Numbers of an action, each from -1 to 1; what is beyond counts as that.
+    /// Length of an action; each number is from -1 to 1 and is clamped to this range.
     #[must_use]
     pub fn n_actions(&self) -> usize {
         self.n_actions
     }
 
-    /// Names of what is true in an environment and not observed, with units.
+    /// Names, with units, of the figures that are true in an environment and not observed.
     #[must_use]
     pub fn figures(&self) -> &'static [&'static str] {
         self.figures
     }
 
-    /// Gives an environment a seed: its next episode is the first one of this seed, and the same whatever other environments there are.
+    /// Sets the seed of an environment: its next episode is the first one of this seed, whatever
+    /// other environments there are.
     ///
     /// # Panics
-    /// An environment that is not there.
+    /// If there is no such environment.
     pub fn seed(&mut self, environment: usize, seed: u64) {
         self.chunks[environment / self.of_chunk].seed(environment % self.of_chunk, seed);
     }
 
     /// Begins the next episode of one environment.
     ///
-    /// - `observed`, `figures`: are written. `[n_observed]`, `[n_figures]`
+    /// - `observed`, `figures`: outputs. `[n_observed]`, `[n_figures]`
     ///
     /// # Panics
-    /// An environment that is not there, a slice of another length.
+    /// If there is no such environment, or if a slice has another length.
     pub fn reset(&mut self, environment: usize, observed: &mut [f32], figures: &mut [f32]) {
         assert_eq!(
             observed.len(),
@@ -134,11 +135,11 @@ impl Tasks {
     /// One step of every environment. `actions`: `[n_environments * n_actions]`
     ///
     /// # Panics
-    /// Slices of other lengths, an action that is not a number.
+    /// If a slice has another length, or if an action is NaN.
     pub fn step(&mut self, actions: &[f32], answers: Answers<'_>) {
         self.check(actions, &answers);
         if let [chunk] = self.chunks.as_mut_slice() {
-            // Nobody has to be woken.
+            // A single thread does not need the thread pool.
             chunk.step(self.autoreset, actions, answers);
             return;
         }
@@ -179,13 +180,14 @@ impl Tasks {
         });
     }
 
-    /// An environment from above, and what its sensor reads: red, green and blue of each pixel, row by row from the top, [`PICTURE_PX`](crate::PICTURE_PX).
+    /// An environment from above, and its sensor's readings: red, green and blue of each pixel, row
+    /// by row from the top, of the size [`PICTURE_PX`](crate::PICTURE_PX).
     ///
     /// # Errors
     /// A picture that cannot be made.
     ///
     /// # Panics
-    /// An environment that is not there.
+    /// If there is no such environment.
     pub fn picture(&self, environment: usize) -> Result<Vec<u8>, TaskError> {
         self.chunks[environment / self.of_chunk].picture(environment % self.of_chunk, &self.shown)
     }

@@ -1,4 +1,4 @@
-//! Environments that one thread steps.
+//! The environments of one thread.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::task::{Felt, Task};
 /// Environments of any task.
 pub(crate) trait Steps: Send + Sync {
     fn n_environments(&self) -> usize;
-    /// From which seed on an environment draws its next episodes.
+    /// Sets the seed from which an environment draws its next episodes.
     fn seed(&mut self, environment: usize, seed: u64);
     /// Begins the next episode of an environment and observes it.
     fn reset(&mut self, environment: usize, observed: &mut [f32], figures: &mut [f32]);
@@ -24,7 +24,7 @@ pub(crate) trait Steps: Send + Sync {
     fn picture(&self, environment: usize, shown: &Shown) -> Result<Vec<u8>, TaskError>;
 }
 
-/// Environments of one task, side by side.
+/// Environments of one task.
 pub(crate) struct Chunk<T: Task> {
     task: Arc<T>,
     sensors: SensorBatch,
@@ -32,14 +32,15 @@ pub(crate) struct Chunk<T: Task> {
     environments: Vec<Environment<T::Episode>>,
     touches: Vec<Touch>,
     ends: Vec<usize>,
-    /// What is read, and what was a step before, kPa. `[n_environments * n_taxels]`
+    /// Readings, and readings of the step before, kPa. `[n_environments * n_taxels]`
     readings_kpa: Vec<f32>,
     before_kpa: Vec<f32>,
     wrench: Vec<[f32; 6]>,
 }
 
 impl<T: Task> Chunk<T> {
-    /// As many environments as there are sensors; the seed of the first is given, the others follow.
+    /// As many environments as there are sensors; the first has this seed, the others the following
+    /// numbers.
     pub(crate) fn new(task: &Arc<T>, sensors: SensorBatch, first_seed: u64) -> Self {
         let (n, n_taxels) = (sensors.n_sensors(), sensors.n_taxels());
         let mut chunk = Self {
@@ -66,7 +67,7 @@ impl<T: Task> Chunk<T> {
         chunk
     }
 
-    /// Begins the next episode of an environment: nothing has been read.
+    /// Begins the next episode of an environment, with readings of zero.
     fn begin(&mut self, number: usize) {
         let sensor = self.environments[number].begin(self.task.as_ref(), self.n_taxels);
         self.sensors.replace(number, sensor);
@@ -89,7 +90,7 @@ impl<T: Task> Chunk<T> {
         }
     }
 
-    /// Moves all robots, but those whose episode is over and begins anew in this step.
+    /// Moves all robots, except those whose episode has ended and is begun anew in this step.
     fn act(&mut self, is_next_step: bool, actions: &[f32]) {
         let moves = self
             .environments
@@ -102,7 +103,7 @@ impl<T: Task> Chunk<T> {
         }
     }
 
-    /// Goes through the frames of a step.
+    /// Computes the readings of all frames of a step.
     fn read(&mut self) {
         self.before_kpa.copy_from_slice(&self.readings_kpa);
         self.touches.clear();

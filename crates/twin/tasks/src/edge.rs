@@ -1,25 +1,25 @@
-//! The edge of a face.
+//! The edge of an object's face.
 
 use glam::DVec2;
 
-/// A closed line, counterclockwise.
+/// A closed convex polygon, counterclockwise.
 pub(crate) struct Edge {
     corners_mm: Vec<DVec2>,
-    /// How far along the line each corner is, mm; and the whole. `[n_corners + 1]`
+    /// Arc length from the start to each corner, mm, and that of the whole edge. `[n_corners + 1]`
     along_mm: Vec<f64>,
 }
 
 /// The nearest point of an edge.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Nearest {
-    /// How far along the edge it is, mm.
+    /// Arc length from the start, mm.
     pub(crate) along_mm: f64,
-    /// How far away, mm; negative over the face.
+    /// Distance, mm; negative over the face.
     pub(crate) beside_mm: f64,
 }
 
 impl Edge {
-    /// Through corners, mm.
+    /// Through these corners, mm.
     pub(crate) fn of(corners_mm: Vec<DVec2>) -> Self {
         let mut along_mm = vec![0.0];
         for (number, corner) in corners_mm.iter().enumerate() {
@@ -29,12 +29,12 @@ impl Edge {
         Self { corners_mm, along_mm }
     }
 
-    /// How long it is, mm.
+    /// Length of the whole edge, mm.
     pub(crate) fn length_mm(&self) -> f64 {
         self.along_mm[self.corners_mm.len()]
     }
 
-    /// The nearest point to a place.
+    /// The point of the edge nearest to a location.
     pub(crate) fn nearest(&self, at_mm: DVec2) -> Nearest {
         let n = self.corners_mm.len();
         let mut best = (f64::INFINITY, 0.0);
@@ -56,7 +56,7 @@ impl Edge {
         }
     }
 
-    /// The point of the edge at a part of its length, and the way out there.
+    /// The point at a fraction of the edge's length, mm, and the outward normal there.
     pub(crate) fn at(&self, part: f64) -> (DVec2, DVec2) {
         let along_mm = part * self.length_mm();
         let n = self.corners_mm.len();

@@ -4,7 +4,7 @@ use twintac_random::stream;
 
 use crate::task::Task;
 
-/// One environment: its seed, which of its episodes it is in, and that.
+/// One environment: its seed and its current episode.
 #[derive(Clone, Debug)]
 pub(crate) struct Environment<E> {
     pub(crate) seed: u64,
@@ -15,7 +15,8 @@ pub(crate) struct Environment<E> {
 }
 
 impl<E> Environment<E> {
-    /// Begins the next episode; returns the number of its sensor. An episode is the same under the same seed and number, whatever else there is.
+    /// Begins the next episode; returns the number of its sensor. The same seed and number give the
+    /// same episode.
     pub(crate) fn begin<T: Task<Episode = E>>(&mut self, task: &T, n_taxels: usize) -> u64 {
         let (episode, sensor) = draw(task, n_taxels, self.seed, self.next);
         self.episode = episode;
@@ -25,7 +26,7 @@ impl<E> Environment<E> {
     }
 }
 
-/// An episode of a seed, and the number of its sensor.
+/// The episode of a seed and a number, and the number of its sensor.
 pub(crate) fn draw<T: Task>(task: &T, n_taxels: usize, seed: u64, number: u64) -> (T::Episode, u64) {
     let mut random = stream(seed, &format!("episode {number}"));
     let sensor = rand::Rng::random(&mut random);

@@ -1,7 +1,9 @@
-//! To tell which of some shapes is pressed.
+//! ExploreShape: classify which of five shapes is pressed.
 //!
-//! A shape lies at an unknown place, turned by an unknown angle. In each step the robot says how probable it holds each shape, and presses once more: where and how deep
-//! it wants. The last step has no press. What it says is scored by its logarithm, against knowing nothing.
+//! A shape lies at an unknown position and rotation. In each step the robot gives the probability
+//! of each shape and presses once more, at a location and depth of its choice. The last step has no
+//! press. The reward is the logarithm of the probability of the right shape, relative to that of a
+//! uniform guess.
 
 use std::f64::consts::PI;
 
@@ -14,51 +16,53 @@ use twintac_shape::{Pose, Shape, ShapeError, Surfaces};
 use crate::outline::outline_mm;
 use crate::task::{Felt, Look, Outcome, READING_UNIT_KPA, Task, limited, part};
 
-/// Shapes that there may be.
+/// The possible shapes.
 const N_SHAPES: usize = 5;
 const NAMES: [&str; N_SHAPES] = ["ball", "cube", "ring", "triangle", "cross"];
 
 /// Presses of an episode.
 const N_PRESSES: usize = 4;
 
-/// Time of a press until it is read, and from there until what is late has arrived as well, s.
+/// Time from the start of a press to its reading, s, and a further time in which late frames
+/// arrive, s.
 const FRAMES_S: [f64; 2] = [0.5, 0.04];
 
-/// How far from the middle a shape is, and the robot goes, mm.
+/// Largest distance of a shape from the middle along x and y, mm, and largest distance that the
+/// robot moves.
 const HIDDEN_MM: DVec2 = DVec2::new(5.0, 3.0);
 const REACH_MM: DVec2 = DVec2::new(12.0, 7.0);
 
-/// How deep it presses, mm.
+/// Range of depths, mm.
 const DEPTH_MM: [f64; 2] = [0.4, 2.4];
 
-/// How sure an action of one against zero is, as a factor of e: what is said is `softmax(5 a)`.
+/// Sharpness of the probabilities: they are `softmax(5 a)` of the actions.
 const SHARPNESS: f64 = 5.0;
 
-/// What is observed of a press beside readings: where and how deep.
+/// Observed numbers of a press beside its readings: location and depth.
 const N_WHERE: usize = 3;
 
-/// Telling shapes.
+/// The task.
 pub(crate) struct ExploreShape {
     shapes: Vec<Shape>,
     bodies: Vec<Body>,
     height_mm: f64,
 }
 
-/// What is true in an environment.
+/// The hidden state of an environment.
 #[derive(Clone, Debug)]
 pub(crate) struct Episode {
     shape: u32,
     place_mm: DVec2,
     spin_rad: f64,
     n_steps: usize,
-    /// Where the sensor was pressed last, and how deep, mm; the last is negative where it is not pressed.
+    /// Location and depth of the last press, mm; the depth is negative in a step without a press.
     at_mm: DVec2,
     depth_mm: f64,
     places_mm: Vec<DVec2>,
-    /// How probable the right shape is held, and the one that is held for the most probable.
+    /// Probability of the right shape, and the most probable shape.
     right: f64,
     guess: usize,
-    /// What was felt. `[n_observed]`
+    /// The observation. `[n_observed]`
     observed: Vec<f32>,
 }
 
@@ -98,7 +102,7 @@ impl ExploreShape {
     }
 }
 
-/// How probable each shape is held. `[N_SHAPES]`
+/// The probability of each shape. `[N_SHAPES]`
 fn said(actions: &[f32]) -> [f64; N_SHAPES] {
     let weight: [f64; N_SHAPES] = std::array::from_fn(|shape| (SHARPNESS * part(actions[shape])).exp());
     let all: f64 = weight.iter().sum();
@@ -213,10 +217,10 @@ impl Task for ExploreShape {
             places_mm: episode.places_mm.iter().map(in_gel).collect(),
             lines: vec![
                 format!(
-                    "a {}, said to be a {}",
+                    "shape: {}, estimate: {}",
                     NAMES[episode.shape as usize], NAMES[episode.guess]
                 ),
-                format!("{:.0} % sure of the right one", 100.0 * episode.right),
+                format!("probability of the true shape: {:.0} %", 100.0 * episode.right),
                 format!(
                     "press {} of {N_PRESSES}, {:.1} mm deep",
                     episode.places_mm.len(),

@@ -1,7 +1,8 @@
-//! To slide along the edge of something by touch alone.
+//! FollowEdge: slide along the edge of an object by touch alone.
 //!
-//! An object with a flat face and an upright side lies still, nobody knows where, how large or how turned. The robot moves the sensor over it, and shall take the gel's middle
-//! along the edge of the face, as far as it comes, in a wanted sense and with a moderate force.
+//! An object with a flat face and a vertical side lies still at an unknown position; its size and
+//! rotation are unknown too. The robot moves the sensor over it. It is to move the gel's middle
+//! along the edge of the face as far as possible, in a wanted sense and with a moderate force.
 
 use std::f64::consts::PI;
 
@@ -21,55 +22,60 @@ const STEP_S: f64 = 1.0 / RATE_HZ;
 /// Steps of an episode: six seconds.
 const N_STEPS: usize = 330;
 
-/// The robot's largest speeds, mm/s: along the surface, and down.
+/// Largest speeds of the robot, mm/s: along the surface, and down.
 const SPEED_MM_S: f64 = 20.0;
 const DOWN_MM_S: f64 = 5.0;
 
-/// How far above the face it begins, how far beside the edge, and how deep it goes, mm.
+/// Height above the face at the start, largest distance from the edge at the start, and range of
+/// depths, mm.
 const ABOVE_MM: [f64; 2] = [0.2, 0.8];
 const BESIDE_MM: f64 = 2.0;
 const DEPTH_MM: [f64; 2] = [-1.0, 3.0];
 
-/// How far beside the edge the way no longer counts, and where the edge is lost, mm.
+/// Distance from the edge at which progress no longer counts, and at which the edge counts as lost,
+/// mm.
 const WIDE_MM: f64 = 3.0;
 const LOST_MM: f64 = 8.0;
 
-/// Forces with which the way counts, N; and at which the robot stops for good.
+/// Range of forces at which progress counts, N, and force at which the episode ends, N.
 const FORCE_N: [f64; 2] = [0.3, 6.0];
 const LIMIT_N: f64 = 15.0;
 
-/// What too much force costs, mm of way for each newton; and what losing the edge or the robot's stop costs, mm.
+/// Cost of each newton above that range, and cost of losing the edge or of exceeding the largest
+/// force, mm of progress.
 const COST_MM_PER_N: f64 = 0.1;
 const LOSS_MM: f64 = 5.0;
 
-/// How much of the edge the sensor can pass in a millimetre of its own way, mm: inside of a curve, a little more.
+/// Largest progress along the edge for each millimetre of the sensor's own motion: slightly more
+/// than 1, because on the inside of a curve the edge passes faster.
 const MOST_OF_WAY: f64 = 1.5;
 
 /// Units of observations, mm.
 const PLACE_UNIT_MM: f64 = 10.0;
 const DEPTH_UNIT_MM: f64 = 2.0;
 
-/// Following an edge.
+/// The task.
 pub(crate) struct FollowEdge {
     shapes: Vec<Shape>,
     bodies: Vec<Body>,
-    /// Of each shape, in its own frame.
+    /// Edge of each shape, in its own frame.
     edges: Vec<Edge>,
     height_mm: f64,
 }
 
-/// What is true in an environment.
+/// The hidden state of an environment.
 #[derive(Clone, Debug)]
 pub(crate) struct Episode {
     body: u32,
-    /// Where the object is, and the sensor's middle, in the robot's frame that begins at the sensor, mm.
+    /// Position of the object and of the sensor's middle in the robot's frame, mm; its origin is
+    /// where the sensor begins.
     object_mm: DVec2,
     spin_rad: f64,
     at_mm: DVec2,
     moved_mm: f64,
     start_mm: f64,
     depth_mm: f64,
-    /// The robot's velocity, as part of what it can.
+    /// Velocity of the robot, as a fraction of the largest.
     velocity: DVec3,
     /// 1 counterclockwise, -1 clockwise, as seen from the gel.
     sense: f64,
@@ -115,7 +121,8 @@ impl FollowEdge {
         self.edges[episode.body as usize].nearest(in_body)
     }
 
-    /// How far the sensor has come along the edge since it was nearest to another point, mm, in the wanted sense.
+    /// Progress of the sensor along the edge since the nearest point `before`, mm, in the wanted
+    /// sense.
     fn way_mm(&self, episode: &Episode, before: Nearest) -> f64 {
         let length_mm = self.edges[episode.body as usize].length_mm();
         let ahead_mm = episode.nearest.along_mm - before.along_mm;

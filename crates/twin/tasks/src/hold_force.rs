@@ -1,8 +1,11 @@
-//! To hold a wanted force on something that yields by an unknown amount.
+//! HoldForce: hold a wanted force on an object of unknown stiffness.
 //!
-//! Under the sensor is a body on a spring. The robot moves the sensor down; the spring and the gel share the way, so that both carry the same force: `F(d) = k (u - d)`,
-//! with `u` how far the robot has moved beyond first touch, `d` how deep the body is in the gel. Each frame takes one step of Newton's method from the frame before, with the
-//! slope of the force between the last two frames. At the robot's speeds that is off by 0.07 N at most, and by 0.13 N in the first two frames of a contact.
+//! Under the sensor is a body on a spring. The robot moves the sensor down. Spring and gel share
+//! the motion, so that both carry the same force: `F(d) = k (u - d)`, where `u` is the robot's
+//! motion beyond first touch and `d` the depth of the body in the gel. Each frame takes one step of
+//! Newton's method from the frame before, with the slope of the force between the last two frames.
+//! At the robot's speeds the error is 0.07 N at most, and 0.13 N in the first two frames of a
+//! contact.
 
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
@@ -16,46 +19,47 @@ use crate::task::{Felt, Look, Outcome, RATE_HZ, Task, limited, part};
 /// Time of a step, s: one frame of the sensor.
 const STEP_S: f64 = 1.0 / RATE_HZ;
 
-/// Steps of an episode, and after how many another force is wanted: a second each.
+/// Steps of an episode, and steps after which another force is wanted: one second.
 const N_STEPS: usize = 220;
 const N_SAME: usize = 55;
 const N_WANTED: usize = N_STEPS / N_SAME;
 
-/// Forces that are wanted, N.
+/// Range of wanted forces, N.
 const WANTED_N: [f64; 2] = [0.3, 3.0];
 
-/// Stiffnesses of the springs, N/mm, evenly drawn in their logarithm.
+/// Range of the springs' stiffness, N/mm; the logarithm is uniformly distributed.
 const STIFFNESS_N_PER_MM: [f64; 2] = [1.0, 10.0];
 
-/// The robot's largest speed, mm/s, and how far it goes, mm.
+/// Largest speed of the robot, mm/s, and its start and range, mm.
 const SPEED_MM_S: f64 = 10.0;
 const START_MM: f64 = -0.5;
 const TRAVEL_MM: [f64; 2] = [-1.0, 9.0];
 
-/// The force, N, or the depth in the gel, mm, at which the robot stops for good; and what each step costs that is left then, N: as much as not to touch at all.
+/// Force, N, or depth in the gel, mm, at which the episode ends; and the cost of each step that is
+/// then left, N: as much as without contact.
 const LIMIT_N: f64 = 10.0;
 const LIMIT_MM: f64 = 4.8;
 const COST_N: f64 = WANTED_N[1];
 
-/// The stiffest that a gel is taken for, N/mm, and how far it has to move before its stiffness is measured, mm.
+/// Upper limit of the gel's stiffness, N/mm, and smallest motion from which it is computed, mm.
 const STIFFEST_N_PER_MM: f64 = 50.0;
 const LEAST_MOVE_MM: f64 = 1e-3;
 
-/// How far from the gel's middle bodies are, mm.
+/// Largest distance of bodies from the gel's middle along x and y, mm.
 const PLACE_MM: DVec2 = DVec2::new(8.0, 3.0);
 
-/// Units of observations.
+/// Units of observations: mm and N.
 const TRAVEL_UNIT_MM: f64 = 5.0;
 const FORCE_UNIT_N: f64 = 3.0;
 
-/// Holding a force.
+/// The task.
 pub(crate) struct HoldForce {
     shapes: Vec<Shape>,
     bodies: Vec<Body>,
     height_mm: f64,
 }
 
-/// What is true in an environment.
+/// The hidden state of an environment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Episode {
     body: u32,
@@ -64,13 +68,14 @@ pub(crate) struct Episode {
     stiffness_n_per_mm: f64,
     wanted_n: [f64; N_WANTED],
     n_steps: usize,
-    /// How far the robot has moved beyond where it would touch, and how deep the body is in the gel, mm.
+    /// Motion of the robot beyond first touch, and depth of the body in the gel, mm.
     travel_mm: f64,
     depth_mm: f64,
-    /// The robot's velocity, as part of what it can.
+    /// Velocity of the robot, as a fraction of the largest.
     speed: f64,
     force_n: f64,
-    /// Stiffness of the gel here, N/mm; and where that was measured last.
+    /// Stiffness of the gel at this depth, N/mm, and depth, mm, and force, N, at which it was
+    /// computed last.
     slope_n_per_mm: f64,
     measured: [f64; 2],
 }
@@ -82,7 +87,7 @@ impl Episode {
 }
 
 impl HoldForce {
-    /// Balls, a cylinder and a cube, anywhere within 8 mm along x and 3 mm along y of the gel's middle.
+    /// Balls, a cylinder and a cube, within 8 mm along x and 3 mm along y of the gel's middle.
     pub(crate) fn on(gel: &FastGel) -> Result<Self, ShapeError> {
         let balls = [8.0, 10.0, 12.5].map(|radius_mm| Shape::Sphere { radius_mm });
         let cylinder = Shape::Cylinder {
@@ -149,7 +154,7 @@ impl Task for HoldForce {
         let (spring, gel) = (episode.stiffness_n_per_mm, episode.slope_n_per_mm);
         // F + s (d' - d) = k (u - d')
         let carried_n = spring * episode.travel_mm + gel * episode.depth_mm - episode.force_n;
-        // The spring does not pull; without contact it has its length.
+        // The spring does not pull; without contact it is relaxed.
         let depth_mm = carried_n / (spring + gel);
         episode.depth_mm = depth_mm.clamp(episode.travel_mm.min(0.0), episode.travel_mm);
     }
@@ -165,7 +170,7 @@ impl Task for HoldForce {
     }
 
     fn feel(&self, episode: &mut Episode, felt: &Felt<'_>) -> Outcome {
-        // Where nothing touches, the fast gel's force is a little beside zero.
+        // Without contact the force of the surrogate is slightly different from zero.
         let force_n = if episode.depth_mm > 0.0 {
             felt.force_n.max(0.0)
         } else {
@@ -223,7 +228,7 @@ impl Task for HoldForce {
             places_mm: Vec::new(),
             lines: vec![
                 format!(
-                    "force {:.2} N, wanted {:.2} N",
+                    "force {:.2} N, target {:.2} N",
                     episode.force_n,
                     episode.wanted_n()
                 ),
@@ -239,8 +244,8 @@ mod tests {
     use super::*;
     use twintac_random::stream;
 
-    /// Moves to and fro on many springs. The largest difference between what the gel and what the spring carries, N, in the first two frames of a contact and later; and the
-    /// largest force.
+    /// Moves to and fro on many springs. Returns the largest difference between the forces of gel
+    /// and spring, N, in the first two frames of a contact and later, and the largest force, N.
     fn imbalance(most_speed: f32) -> [f64; 3] {
         let gel = FastGel::phystac().unwrap();
         let task = HoldForce::on(&gel).unwrap();
@@ -281,7 +286,8 @@ mod tests {
 
     #[test]
     fn spring_and_gel_carry_the_same_force() {
-        // Under a flat end that just touches, the fast gel has a tenth of a newton at once, which the spring follows a frame later.
+        // Under a flat end that just touches, the surrogate gives a tenth of a newton at once. The
+        // spring follows one frame later.
         for (most_speed, limits_n) in [(0.3, [0.2, 0.03]), (1.0, [0.2, 0.07])] {
             let [first_n, worst_n, most_n] = imbalance(most_speed);
             assert!(most_n > 2.0, "nothing is pressed: {most_n}");

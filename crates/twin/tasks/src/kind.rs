@@ -4,14 +4,14 @@ use std::str::FromStr;
 
 use twintac_shape::ShapeError;
 
-/// A task.
+/// A kind of task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// To tell which of five shapes is pressed by choosing where and how deep to press.
+    /// Classify which of five shapes is pressed, by choosing where and how deep to press.
     ExploreShape,
-    /// To press with a wanted force something that yields by an unknown amount.
+    /// Hold a wanted force on an object of unknown stiffness.
     HoldForce,
-    /// To slide along the edge of something.
+    /// Slide along the edge of an object.
     FollowEdge,
 }
 
@@ -41,24 +41,24 @@ impl FromStr for Kind {
     }
 }
 
-/// A task that cannot be.
+/// Why environments could not be made or drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum TaskError {
     /// There is no task of this name.
     #[error("there is no task `{name}`; there are ExploreShape, HoldForce and FollowEdge")]
     Name {
-        /// What was asked for.
+        /// The name that was given.
         name: String,
     },
-    /// A number of environments that can't be.
+    /// The number of environments is out of range.
     #[error("`n_environments` is {found}, expected 1 to {most}")]
     Count {
-        /// What was asked for.
+        /// The number that was given.
         found: usize,
-        /// Most environments, each with a sensor of this gel.
+        /// Largest number of environments, each with a sensor of this gel.
         most: usize,
     },
-    /// A shape of a task can't be.
+    /// A shape of a task cannot exist.
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// A picture cannot be made.

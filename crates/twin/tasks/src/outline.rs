@@ -5,10 +5,11 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use twintac_shape::{Pose, Shape};
 
-/// Corners of what stands for a circle.
+/// Corners of the polygon that stands for a circle.
 const N_ROUND: usize = 48;
 
-/// Outlines of what of a shape comes near, in the gel's frame, mm; of a shape without one of its own, none. Outer ones are counterclockwise.
+/// Outlines of the face of a shape that comes near, in the gel's frame, mm; empty for a shape whose
+/// outline is not known by a formula. Outer outlines are counterclockwise.
 pub(crate) fn outline_mm(shape: &Shape, gel_from_body: &Pose) -> Vec<Vec<DVec2>> {
     let outlines = match *shape {
         Shape::Sphere { radius_mm } | Shape::Cylinder { radius_mm, .. } => vec![circle(radius_mm)],

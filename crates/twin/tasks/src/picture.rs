@@ -1,4 +1,4 @@
-//! An environment as a picture: what the sensor reads, and what is there.
+//! An environment as a picture: the readings, and the contact.
 
 use glam::DVec2;
 use twintac_fast::FastGel;
@@ -11,7 +11,7 @@ use crate::task::Look;
 /// Columns and rows of a picture's pixels.
 pub const PICTURE_PX: [usize; 2] = [600, 240];
 
-/// Size of both maps and of the room around them, px.
+/// Size of both maps and of the margins around them, px.
 const MAP_PX: [f64; 2] = [272.0, 144.0];
 const LEFT_PX: [f64; 2] = [16.0, 312.0];
 const TOP_PX: f64 = 34.0;
@@ -20,10 +20,10 @@ const LINE_PX: f64 = 15.0;
 /// Columns and rows of the pressure map.
 const GRID: [usize; 2] = [68, 36];
 
-/// The darkest pressure, kPa, unless more is read.
+/// End of the colour scale, kPa, unless a reading is larger.
 const FULL_KPA: f64 = 10.0;
 
-/// What all pictures of a sensor have in common.
+/// Data that all pictures of a sensor share.
 pub(crate) struct Shown {
     low_mm: DVec2,
     size_mm: DVec2,
@@ -52,7 +52,7 @@ impl Shown {
         })
     }
 
-    /// A place of the gel in one of both maps, px.
+    /// A position on the gel in one of both maps, px.
     fn at_px(&self, map: usize, at_mm: DVec2) -> [f64; 2] {
         let part = (at_mm - self.low_mm) / self.size_mm;
         [
@@ -75,7 +75,7 @@ pub(crate) fn pixels(look: &Look, readings_kpa: &[f32], shown: &Shown) -> Result
     Ok(twintac_plot::pixels(&scene)?)
 }
 
-/// The map of what is read.
+/// The map of the readings.
 fn pressure(scene: &mut Scene, readings_kpa: &[f32], shown: &Shown) -> Result<(), TaskError> {
     let readings_kpa: Vec<f64> = readings_kpa.iter().map(|reading| f64::from(*reading)).collect();
     let most_kpa = readings_kpa
@@ -90,7 +90,7 @@ fn pressure(scene: &mut Scene, readings_kpa: &[f32], shown: &Shown) -> Result<()
         .collect();
     scene.small(
         [LEFT_PX[0], TOP_PX - 10.0],
-        "what the taxels read, simulated",
+        "readings of the taxels, simulated",
         Ink::Text,
         Anchor::Start,
     );
@@ -116,10 +116,10 @@ fn pressure(scene: &mut Scene, readings_kpa: &[f32], shown: &Shown) -> Result<()
     Ok(())
 }
 
-/// The gel and what is over it.
+/// The gel and the body over it.
 fn contact(scene: &mut Scene, look: &Look, shown: &Shown) {
     let title = format!(
-        "what is there; the gel has {} × {} mm",
+        "true contact; the gel has {} × {} mm",
         shown.size_mm.x, shown.size_mm.y
     );
     scene.small([LEFT_PX[1], TOP_PX - 10.0], title, Ink::Text, Anchor::Start);

@@ -1,84 +1,84 @@
-//! What a task has to say about one environment.
+//! What a task defines for one environment.
 
 use glam::DVec2;
 use twintac_fast::{Body, Touch};
 use twintac_random::RandomStream;
 
-/// Frames that a sensor delivers in a second, Hz: PhysTac's.
+/// Frame rate of a sensor, Hz: PhysTac's.
 pub(crate) const RATE_HZ: f64 = 55.0;
 
-/// Readings are observed in this unit, kPa, and what they changed by since the last frame in the other.
+/// Units of observed readings, and of their changes since the last frame, kPa.
 pub(crate) const READING_UNIT_KPA: f32 = 10.0;
 pub(crate) const CHANGE_UNIT_KPA: f32 = 1.0;
 
-/// Largest value of an observation.
+/// Largest absolute value of an observation.
 pub(crate) const LARGEST_OBSERVED: f32 = 10.0;
 
-/// A task: what happens in one environment, from the beginning of an episode to its end.
+/// A task: the events in one environment, from the start of an episode to its end.
 pub(crate) trait Task: Send + Sync + 'static {
-    /// What is true in an environment.
+    /// The hidden state of an environment.
     type Episode: Clone + Send + Sync;
-    /// Numbers of an action, each from -1 to 1.
+    /// Length of an action; each number is from -1 to 1.
     const N_ACTIONS: usize;
-    /// Names of what is told about an environment beside the observation, with units.
+    /// Names, with units, of the figures that are returned beside the observation.
     const FIGURES: &'static [&'static str];
-    /// Times from frame to frame of one step, s. Of the last one, readings are seen.
+    /// Times from frame to frame of one step, s. The readings of the last frame are observed.
     const FRAMES_S: &'static [f64];
-    /// Whether the gel rests before each step.
+    /// Whether the gel is set to rest before each step.
     const RESTS: bool;
 
-    /// What may touch the sensor.
+    /// The bodies that may touch the sensor.
     fn bodies(&self) -> &[Body];
-    /// Numbers of an observation.
+    /// Length of an observation.
     fn n_observed(&self, n_taxels: usize) -> usize;
-    /// Begins an episode; nothing is touched yet.
+    /// Begins an episode, without contact.
     fn begin(&self, n_taxels: usize, random: &mut RandomStream) -> Self::Episode;
     /// Moves the robot.
     fn act(&self, episode: &mut Self::Episode, actions: &[f32]);
-    /// What touches the sensor now.
+    /// The body at the sensor, and its pose.
     fn touch(&self, episode: &Self::Episode) -> Touch;
-    /// What comes of it, by what the sensor reads and the force on the gel.
+    /// The outcome of a step, from the sensor's readings and the force on the gel.
     fn feel(&self, episode: &mut Self::Episode, felt: &Felt<'_>) -> Outcome;
-    /// What the robot knows. `[n_observed]`
+    /// Writes the observation. `[n_observed]`
     fn observe(&self, episode: &Self::Episode, felt: &Felt<'_>, observed: &mut [f32]);
-    /// What is told beside it. `[FIGURES]`
+    /// Writes the figures beside it. `[FIGURES]`
     fn figures(&self, episode: &Self::Episode, figures: &mut [f32]);
-    /// What a picture shows.
+    /// Contents of a picture.
     fn look(&self, episode: &Self::Episode) -> Look;
 }
 
-/// What a sensor feels.
+/// Readings of a sensor, and the force on its gel.
 #[derive(Clone, Copy)]
 pub(crate) struct Felt<'a> {
-    /// What it reads, and what it read a step before, kPa. `[n_taxels]`
+    /// Readings, and readings of the step before, kPa. `[n_taxels]`
     pub(crate) readings_kpa: &'a [f32],
     pub(crate) before_kpa: &'a [f32],
-    /// The force with which it is pressed, N.
+    /// The force on the gel, N, positive in compression.
     pub(crate) force_n: f64,
 }
 
-/// How a step ended.
+/// The outcome of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outcome {
     pub(crate) reward: f64,
-    /// The task is over.
+    /// The task has ended.
     pub(crate) terminated: bool,
-    /// Time is over.
+    /// The time limit has been reached.
     pub(crate) truncated: bool,
 }
 
-/// What a picture shows, in the gel's frame.
+/// Contents of a picture, in the gel's frame.
 pub(crate) struct Look {
-    /// Outlines of what touches, mm.
+    /// Outlines of the body, mm.
     pub(crate) outlines_mm: Vec<Vec<DVec2>>,
-    /// Where the robot has been, mm.
+    /// Locations that the robot has pressed or is at, mm.
     pub(crate) places_mm: Vec<DVec2>,
     /// Lines of text.
     pub(crate) lines: Vec<String>,
 }
 
 impl Felt<'_> {
-    /// Readings and their changes, in their units. `[2 * n_taxels]`
+    /// Readings and their changes, in units of observations. `[2 * n_taxels]`
     pub(crate) fn observe(&self, observed: &mut [f32]) {
         let (readings, changes) = observed.split_at_mut(self.readings_kpa.len());
         for (taxel, reading_kpa) in self.readings_kpa.iter().enumerate() {
@@ -88,12 +88,12 @@ impl Felt<'_> {
     }
 }
 
-/// Within what an observation may be.
+/// A value, clamped to the range of observations.
 pub(crate) fn limited(value: f32) -> f32 {
     value.clamp(-LARGEST_OBSERVED, LARGEST_OBSERVED)
 }
 
-/// A part of what a robot can do, from -1 to 1.
+/// An action, clamped to -1 to 1.
 pub(crate) fn part(action: f32) -> f64 {
     f64::from(action.clamp(-1.0, 1.0))
 }

@@ -1,9 +1,11 @@
-//! How imperfect sensors are, unless said otherwise.
+//! The default sensor variation.
 
 use twintac_sensors::Imperfection;
 
-/// Imperfections of sensors that work. Gains, port laws, noise, steps and rate are those that `twintac fast imperfection` found on the emulated PhysTac
-/// (`imperfections/phystac.toml`); a tenth of a kPa of drift since the tare, hysteresis, mounting and faults are assumed.
+/// The default sensor variation, for sensors that work. Gains, static nonlinearity of the ports,
+/// noise, resolution and frame rate are those that `twintac fast imperfection` found on the
+/// emulated PhysTac (`imperfections/phystac.toml`). Assumed are a zero drift of a tenth of a kPa
+/// since the tare, hysteresis, installation and faults.
 #[must_use]
 pub fn usual_imperfection() -> Imperfection {
     Imperfection {

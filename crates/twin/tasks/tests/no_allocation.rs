@@ -1,4 +1,4 @@
-//! Steps allocate nothing; the beginning of an episode does.
+//! Steps do not allocate memory; the start of an episode does.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -10,7 +10,7 @@ mod counting;
 
 const N: usize = 64;
 
-/// Allocations in so many steps after some that are not counted.
+/// Number of allocations in `n_steps` steps, after `n_before` steps that are not counted.
 fn counted(kind: Kind, n_threads: usize, [n_before, n_steps]: [usize; 2]) -> usize {
     let gel = FastGel::phystac().unwrap();
     let sizes = [N, n_threads];
@@ -39,7 +39,8 @@ fn counted(kind: Kind, n_threads: usize, [n_before, n_steps]: [usize; 2]) -> usi
     counting::n_allocations() - before
 }
 
-/// All in one test: what another does at the same time would be counted too.
+/// This is one test, because the allocations of another test that runs at the same time would be
+/// counted too.
 #[test]
 fn steps_allocate_nothing() {
     for (kind, steps) in [

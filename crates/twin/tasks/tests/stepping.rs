@@ -1,4 +1,4 @@
-//! Environments side by side are what each is alone, and episodes end and begin as asked for.
+//! Environments in a batch behave as alone, and episodes end and begin as configured.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -24,7 +24,7 @@ fn imperfection() -> Imperfection {
     }
 }
 
-/// Environments, and all that they answer.
+/// Environments with the outputs of their steps.
 struct Driven {
     tasks: Tasks,
     observed: Vec<f32>,
@@ -53,7 +53,7 @@ impl Driven {
         }
     }
 
-    /// Actions of each environment depend on its number and the step alone.
+    /// Actions depend only on the environment's number and the step.
     fn step(&mut self, step: usize) {
         let n_actions = self.tasks.n_actions();
         let number = |index: usize| index + 7 * step;
@@ -111,7 +111,7 @@ proptest! {
     ) {
         let mut many = Driven::new(kind, &imperfection(), [n, n_threads], Autoreset::NextStep);
         let mut few = Driven::new(kind, &imperfection(), [n / 2 + 1, 1], Autoreset::NextStep);
-        // The last environment of the many has the seed of the first one of the few.
+        // The last environment of `turned` has the seed of the first one of the others.
         let mut turned = Driven::new(kind, &imperfection(), [n, 2], Autoreset::NextStep);
         for environment in 0..n {
             many.tasks.seed(environment, seed + environment as u64);
@@ -140,7 +140,7 @@ proptest! {
     }
 }
 
-/// Steps until each way to begin anew has ended two episodes; they are the same ones.
+/// Steps until each kind of autoreset has ended two episodes. The episodes are the same.
 #[test]
 fn episodes_are_the_same_however_the_next_one_begins() {
     for (kind, limit) in [
@@ -188,7 +188,7 @@ fn without_autoreset_an_episode_waits_for_a_reset() {
     assert!(!driven.is_over(0) && driven.is_over(1));
 }
 
-/// A seed gives the same episodes again, and other ones than another seed.
+/// A seed gives the same episodes again, and other episodes than another seed.
 #[test]
 fn a_seed_repeats_its_episodes() {
     let mut driven = Driven::new(Kind::HoldForce, &imperfection(), [1, 1], Autoreset::Disabled);
@@ -207,7 +207,7 @@ fn a_seed_repeats_its_episodes() {
     assert_ne!(first, begin(&mut driven, Some(8)));
 }
 
-/// Pressed on, the force grows, and the readings with it.
+/// As the press goes deeper, the force grows, and the readings with it.
 #[test]
 fn a_body_that_is_pressed_on_is_felt_more_and_more() {
     let perfect = Imperfection::default();
@@ -234,7 +234,7 @@ fn a_body_that_is_pressed_on_is_felt_more_and_more() {
     );
 }
 
-/// Whoever presses beside a shape feels nothing; whoever presses on it does.
+/// A press on a shape is felt by at least one taxel.
 #[test]
 fn a_shape_is_felt_where_it_is() {
     let perfect = Imperfection::default();
@@ -252,7 +252,7 @@ fn a_shape_is_felt_where_it_is() {
             &observed[..8]
         );
     }
-    // 12 mm aside are 7 mm from the nearest middle of a shape, and the shapes reach over half of the gel.
+    // The reward of equal scores for all shapes is zero.
     assert!(
         driven.rewards.iter().all(|reward| reward.abs() < 1e-9),
         "nothing was said"

@@ -1,4 +1,4 @@
-//! Boulders: bumpy closed surfaces of many triangles, as scanned objects have them.
+//! Random meshes: closed surfaces with bumps and many triangles, like those of scanned objects.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -7,21 +7,22 @@ use glam::{DVec2, DVec3};
 use rand::Rng;
 use twintac_shape::{SurfaceError, Surfaces, TriangleSurface};
 
-/// How many there are.
+/// Number of random meshes.
 pub(crate) const N: u32 = 5;
 
-/// Rows of triangles from pole to pole, and triangles of a row's upper side: 20,000 triangles.
+/// Rows of triangles from pole to pole, and triangles along the upper side of a row: 20,000
+/// triangles.
 const ROWS: [usize; 2] = [101, 100];
 
-/// Bumps of a boulder.
+/// Number of bumps of a mesh.
 const N_BUMPS: usize = 6;
 
-/// The name of a boulder as a shape's path.
+/// The name of a random mesh, used as a shape's path.
 pub(crate) fn name(number: u32) -> String {
     format!("boulder {number}")
 }
 
-/// The surfaces of the shapes that exams press with, by name.
+/// The random meshes that test presses use, by name.
 ///
 /// # Errors
 /// None that is known.
@@ -30,7 +31,7 @@ pub fn exam_surfaces() -> Result<Surfaces, SurfaceError> {
     (0..N).map(surface).collect()
 }
 
-/// A ball with waves on it.
+/// A ball with bumps.
 fn boulder(number: u32) -> Result<TriangleSurface, SurfaceError> {
     let random = &mut twintac_random::stream(u64::from(number), "boulder");
     let radius_mm = random.random_range(4.0..10.0);

@@ -1,4 +1,4 @@
-//! What is pressed, where and how deep.
+//! Random choice of shape, location, depth and mesh of a press.
 
 use std::f64::consts::TAU;
 
@@ -10,32 +10,33 @@ use twintac_shape::{Part, Pose, Shape, SurfaceFile};
 
 use crate::boulder;
 
-/// The gel's width of which the sizes below are, mm: the root of PhysTac's area.
+/// Width of the gel for which the sizes below hold, mm: the root of the area of PhysTac's gel.
 const WIDTH_MM: f64 = 25.0;
 
 /// Largest tilt of a press, radians.
 pub(crate) const LARGEST_TILT: f64 = 0.3;
 
-/// Largest tilt on the way of a slide.
+/// Largest rotation during a sliding press, radians.
 const LARGEST_TURN: f64 = 0.15;
 
-/// Largest tilt of a part of a whole.
+/// Largest tilt of a part of a union, radians.
 const LARGEST_TILT_OF_PART: f64 = 0.4;
 
-/// How deep a press goes at most, of the gel's height.
+/// Largest depth of a press, as a fraction of the gel's height.
 const DEEPEST: f64 = 0.6;
 
-/// The deepest frame of a press is at least so deep, as part of that. The frames before it show what is less deep.
+/// The deepest frame of a press has at least this fraction of the largest depth. The frames before
+/// it cover smaller depths.
 const SHALLOWEST: f64 = 0.35;
 
-/// Edges under a shape, over the shortest: of meshes that are right, and of those that are cheap.
+/// Edges under a shape over the shortest: of accurate meshes, and of cheap ones.
 const FINE: [f64; 2] = [1.0, 4.0 / 3.0];
 const COARSE: [f64; 2] = [4.0 / 3.0, 1.75];
 
-/// Edges away from the shape, over the gel's height.
+/// Number of edges over the gel's height, away from the shape.
 const EDGES_PER_HEIGHT: f64 = 7.0;
 
-/// A press to teach with.
+/// A press to be solved.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Draw {
     pub(crate) shape: Shape,
@@ -43,43 +44,47 @@ pub(crate) struct Draw {
     pub(crate) rotation: DQuat,
     pub(crate) depth_mm: f64,
     pub(crate) edge_mm: f64,
-    /// How it goes on once it is down.
+    /// The motion after the shape is down.
     pub(crate) slide: Option<Slide>,
 }
 
-/// A way along the surface.
+/// A motion along the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Slide {
-    /// How far, mm.
+    /// Displacement, mm.
     pub(crate) by_mm: DVec2,
-    /// The turn on the way, about an axis in the gel's frame.
+    /// The rotation during the motion, about an axis in the gel's frame.
     pub(crate) turn: DQuat,
 }
 
-/// What is drawn.
+/// The purpose of a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
-    /// Balls, cylinders, boxes, rings and wedges, alone or together; some on coarse meshes.
+    /// Training: balls, cylinders, boxes, rings and wedges, alone or as a union; a third of them on
+    /// coarse meshes.
     Lesson,
-    /// Crosses, triangles and boulders, which no lesson has, on fine meshes; straight down.
+    /// Testing: crosses, triangles and random meshes, which are not trained on, on the finest
+    /// meshes; straight down.
     Exam,
-    /// The same shapes, which slide and tilt after they are down.
+    /// Testing: the same shapes, which slide and rotate after they are down.
     Slide,
 }
 
-/// Sizes of the sensor's own balls, as parts of what is described: a bench may have to find the size of its tip.
+/// Radii of the sensor's own balls, as fractions of the described radius: the true size of a tip
+/// may have to be fitted.
 const OWN_SIZES: [f64; 2] = [0.6, 1.6];
 
-/// By which part of the gel places go on from press to press: two numbers whose multiples leave no
-/// hole (Roberts, 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// Fraction of the gel's extent by which the location moves on from press to press (modulo 1): two
+/// numbers whose multiples leave no hole (Roberts, 2018, "The unreasonable effectiveness of
+/// quasirandom sequences").
 const SPREAD: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2);
 
-/// How far beyond an edge a place may fall, as part of the way across, which is then put so close
-/// to it.
+/// How far beyond an edge a location may fall, as a fraction of the extent. Such a location is
+/// moved to the second fraction from the edge.
 const BEYOND: f64 = 0.06;
 const AT_EDGE: f64 = 0.01;
 
-/// What is drawn of presses with the sensor's own indenters.
+/// The purpose of a press with one of the sensor's own indenters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Own {
     Lesson,
@@ -87,8 +92,8 @@ pub(crate) enum Own {
 }
 
 /// The press of a number with one of the sensor's own indenters, no farther from the ports than the
-/// gel is high; none for a sensor without indenters. So many presses as there are, they are spread
-/// evenly over all of that: at random, a few would leave holes.
+/// gel is high; `None` for a sensor without indenters. The locations of successive numbers are
+/// spread evenly over this area: a few random locations would leave holes.
 pub(crate) fn own(sensor: &Sensor, own: Own, seed: u64, number: u64) -> Option<Draw> {
     let name = match own {
         Own::Lesson => "own lesson",
@@ -99,7 +104,7 @@ pub(crate) fn own(sensor: &Sensor, own: Own, seed: u64, number: u64) -> Option<D
             let mut of_all = twintac_random::stream(seed, name);
             DVec2::new(of_all.random(), of_all.random())
         }
-        // However few there are, one is in the middle.
+        // The first test press is in the middle, however few there are.
         Own::Exam => DVec2::splat(0.5),
     };
     let random = &mut twintac_random::stream(seed, &format!("{name} {number}"));
@@ -125,13 +130,14 @@ pub(crate) fn own(sensor: &Sensor, own: Own, seed: u64, number: u64) -> Option<D
     Some(upright(sensor, &shape, place_mm, spin_rad, depth_mm))
 }
 
-/// Parts of the way across, with more of them close to the edges: nothing is taught from beyond.
+/// Moves more locations close to the edges, because no press lies beyond them. `part`: location as
+/// a fraction of the extent.
 fn towards_edges(part: DVec2) -> DVec2 {
     let stretched = (1.0 + 2.0 * BEYOND) * part - BEYOND;
     stretched.clamp(DVec2::splat(AT_EDGE), DVec2::splat(1.0 - AT_EDGE))
 }
 
-/// How deep presses go at most, mm.
+/// Largest depth of presses, mm.
 pub(crate) fn deepest_mm(sensor: &Sensor) -> f64 {
     let limit_mm = sensor.limits.map_or(f64::INFINITY, |limits| limits.depth_mm);
     limit_mm.min(DEEPEST * height_mm(sensor))
@@ -149,19 +155,21 @@ fn width_mm(sensor: &Sensor) -> f64 {
     (high - low).truncate().element_product().sqrt()
 }
 
-/// The shortest edges under a shape, mm.
+/// The shortest mesh edges under a shape, mm.
 fn finest_mm(sensor: &Sensor) -> f64 {
     finest_edge_mm(height_mm(sensor), width_mm(sensor))
 }
 
-/// By how much shapes are larger than the sizes below.
+/// Factor from the sizes below to those of shapes for this sensor.
 pub(crate) fn scale(sensor: &Sensor) -> f64 {
     width_mm(sensor) / WIDTH_MM
 }
 
-/// Edges over the gel's height away from the shape, for a press that was drawn with edges of this length under it, mm. Where the side of the gel meets
-/// the floor, pressure grows without end the closer it is looked at: what a port there reads depends on the edges. With such a port, all edges of a mesh
-/// are alike, so that it does not depend on the place of the press too.
+/// Number of edges over the gel's height, away from the shape, for a press with edges of this
+/// length under it, mm. Where the side of the gel meets its base, the pressure grows without limit
+/// as the mesh gets finer, so the pressure at a port there depends on the edges. For such a sensor
+/// all edges of a mesh have one length, so that the pressure does not also depend on the location
+/// of the press.
 pub(crate) fn edges_per_height(sensor: &Sensor, edge_mm: f64) -> f64 {
     if sensor.has_port_at_side() {
         height_mm(sensor) / edge_mm
@@ -181,7 +189,7 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         (true, kind @ 0..5) => simple(kind, scale, random),
         (true, _) => whole(scale, random),
     };
-    // Coarse presses are cheap, so that there are many; fine ones are right.
+    // Coarse meshes are cheap and allow many presses; fine meshes are accurate.
     let coarseness = match random.random_range(0..3) {
         _ if !is_lesson => None,
         0 => Some(COARSE),
@@ -201,7 +209,7 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         depth_mm: deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0),
         edge_mm: finest_mm(sensor) * coarseness.map_or(1.0, |[least, most]| random.random_range(least..most)),
         slide: (purpose == Purpose::Slide).then(|| {
-            // Towards the middle, so that it stays on the gel.
+            // Towards the middle, so that the shape stays on the gel.
             let inwards = (DVec2::splat(0.5) - within).to_angle() + random.random_range(-1.0..1.0);
             let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
             Slide {
@@ -224,14 +232,14 @@ pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad:
     }
 }
 
-/// Turned at random about the vertical, then tilted in a random direction.
+/// A random rotation about the vertical, then a tilt in a random direction.
 fn turned(tilt: f64, random: &mut impl Rng) -> DQuat {
     let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
     let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
     (DQuat::from_axis_angle(axis, tilt) * spin).normalize()
 }
 
-/// A shape of one piece, tall enough never to be pushed in to its top.
+/// A shape of one piece, tall enough that its top never goes below the gel's surface.
 pub(crate) fn simple(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
     let mut between = |low: f64, high: f64| scale * random.random_range(low..high);
     let edge_radius_mm = between(0.6, 1.6);
@@ -263,7 +271,7 @@ pub(crate) fn simple(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
             angle_rad: between(1.3, 2.4) / scale,
             length_mm: between(6.0, 20.0),
             height_mm: 0.7 * height_mm,
-            // A sharper ridge slips between the nodes of the mesh.
+            // A sharper ridge would slip between the nodes of the mesh.
             edge_radius_mm: between(1.0, 2.0),
         },
     }
@@ -292,7 +300,7 @@ fn unseen(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
     }
 }
 
-/// Two or three shapes beside each other.
+/// A union of two or three shapes beside each other.
 fn whole(scale: f64, random: &mut impl Rng) -> Shape {
     let n_parts = random.random_range(2..4);
     let mut part = |_| {
@@ -322,7 +330,7 @@ mod tests {
     use super::*;
     use twintac_sensor::SensorFile;
 
-    /// The farthest that a place on the gel is from the nearest lesson, mm.
+    /// The largest distance of a location on the gel from the nearest training press, mm.
     fn largest_hole_mm(sensor: &Sensor, seed: u64, n: u64) -> f64 {
         let presses: Vec<DVec2> = (0..n)
             .map(|number| own(sensor, Own::Lesson, seed, number).unwrap().place_mm)
@@ -340,7 +348,8 @@ mod tests {
 
     #[test]
     fn a_few_own_presses_leave_no_hole() {
-        // At random, 100 leave one of 4.4 mm. The ports are so far out that presses reach all of the gel.
+        // With 100 random locations the largest hole is 4.4 mm. The ports are so far out that
+        // presses reach all of the gel.
         let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
         sensor.gel.solid = twintac_shape::Solid::Block {
             size_mm: [25.0, 25.0, 6.0],

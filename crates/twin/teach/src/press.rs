@@ -1,4 +1,4 @@
-//! A press of the solved gel, as a lesson.
+//! The FEM solution of a press.
 
 use std::sync::Arc;
 
@@ -15,46 +15,46 @@ use crate::draw::{Draw, Own, Purpose, Slide, draw, edges_per_height, own, uprigh
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
 
-/// Frames on the way of a slide.
+/// Frames of a sliding press after it is down.
 const N_SLIDE_FRAMES: u32 = 5;
 
-/// Finer meshes than any that is asked for.
+/// Limit of a mesh's nodes, larger than any mesh of these presses.
 const MAX_NODES: usize = 60_000;
 
-/// Why there is no lesson.
+/// Why a press could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum TeachError {
-    /// The gel can't be pressed so.
+    /// The gel could not be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
-    /// The shape can't be.
+    /// The shape cannot exist.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
-    /// There is nothing to press with.
+    /// The sensor has no indenters.
     #[error("the sensor describes no indenters to press with")]
     NoIndenter,
-    /// The surface of a shape can't be.
+    /// The surface of a shape cannot exist.
     #[error(transparent)]
     Surface(#[from] twintac_shape::SurfaceError),
 }
 
-/// Presses one sensor's gel at random.
+/// Makes random presses of one sensor's gel.
 #[derive(Clone, Debug)]
 pub struct Teacher {
     sensor: Arc<Sensor>,
-    /// Where the floor's pressure is read, as ports.
+    /// The locations at which the pressure is evaluated, as ports.
     places: Vec<Taxel>,
 }
 
 impl Teacher {
-    /// A teacher who reads the floor at these places of the gel's plane, mm: over a disc as large
-    /// and as high as the port of the taxel that is there, or of the first taxel where none is.
-    /// `[n_places]`
+    /// Evaluates the pressure at these locations of the gel's plane, mm: over a disc with the
+    /// radius and height of the port of the taxel at that location, or of the first taxel's port
+    /// where no taxel is. `[n_places]`
     ///
     /// # Errors
     /// None that is known.
     pub fn new(sensor: &Sensor, places_mm: &[DVec2]) -> Result<Self, TeachError> {
-        // Exams press with surfaces that the sensor does not have.
+        // Test presses use surfaces that the sensor does not have.
         let mut sensor = sensor.clone();
         sensor.surfaces.extend(exam_surfaces()?);
         let places = places_mm.iter().map(|at| {
@@ -72,8 +72,8 @@ impl Teacher {
         })
     }
 
-    /// The lesson of a number; the same number gives the same lesson. It ends where the solver does, or where the gel gives way,
-    /// and has no frames if that cannot begin.
+    /// The training press of a number; the same number gives the same press. It ends where the
+    /// solver fails or the force decreases, and has no frames if this happens at once.
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
@@ -82,8 +82,9 @@ impl Teacher {
         self.press(&draw(&self.sensor, Purpose::Lesson, random))
     }
 
-    /// A lesson with one of the sensor's own indenters, upright and no farther from its ports than
-    /// the gel is high, evenly spread; balls of 0.6 to 1.6 times their described size.
+    /// A training press with one of the sensor's own indenters, upright and no farther from the
+    /// ports than the gel is high; locations are evenly spread. The radii of balls are 0.6 to 1.6
+    /// times the described ones.
     ///
     /// # Errors
     /// A sensor that cannot be meshed, or has no indenters.
@@ -91,7 +92,7 @@ impl Teacher {
         self.own(Own::Lesson, seed, number)
     }
 
-    /// The same, to be judged on.
+    /// The same as a test press.
     ///
     /// # Errors
     /// Those of [`Self::own_lesson`].
@@ -106,7 +107,7 @@ impl Teacher {
         }
     }
 
-    /// The exam of a number: a press of a shape that no lesson has.
+    /// The test press of a number: a press of a shape that is not trained on.
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
@@ -115,8 +116,10 @@ impl Teacher {
         self.press(&draw(&self.sensor, Purpose::Exam, random))
     }
 
-    /// The slide of a number: the shape of an exam goes down, then aside, and tilts on the way. A gel without friction has no memory, so each pose
-    /// of the way is pressed to from rest: gel that is pushed along instead stays caught in front of sharp edges.
+    /// The sliding test press of a number: the shape of a test press goes down, then sideways, and
+    /// rotates on the way. Without friction the state of the gel does not depend on the path, so
+    /// each pose is reached from rest: the mesh of a gel that is pushed along instead stays caught
+    /// in front of sharp edges.
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
@@ -148,10 +151,11 @@ impl Teacher {
         Ok(lesson)
     }
 
-    /// A shape pressed upright at a place, mm, turned about the vertical, radians, down to a depth below first touch, mm: as an exam, but not at random.
+    /// A press of an upright shape with given parameters: location, mm, rotation about the
+    /// vertical, radians, and depth below first touch, mm; on the finest mesh, like a test press.
     ///
     /// # Errors
-    /// A sensor that cannot be meshed, a shape that can't be.
+    /// A sensor that cannot be meshed, a shape that cannot exist.
     pub fn upright(
         &self,
         shape: &Shape,
@@ -162,7 +166,8 @@ impl Teacher {
         self.press(&upright(&self.sensor, shape, place_mm, spin_rad, depth_mm))
     }
 
-    /// A press unlike all that is taught, on the finest mesh: only the moments that are.
+    /// An out-of-distribution press, on the finest mesh: only the frames that are out of
+    /// distribution.
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
@@ -177,7 +182,7 @@ impl Teacher {
         Ok(press)
     }
 
-    /// Straight down, as far as the solver comes.
+    /// Presses straight down, as far as the solver converges.
     fn press(&self, drawn: &Draw) -> Result<Lesson, TeachError> {
         let settings = SimulateSettings {
             edges_per_height: edges_per_height(&self.sensor, drawn.edge_mm),
@@ -226,7 +231,8 @@ impl Teacher {
             };
             let nodal_kpa = body.pressure_kpa(&state);
             let force_n = solved.indenter_force_n;
-            // No elastic gel pushes less the deeper it is pressed: a thin part has slipped between the nodes of the mesh.
+            // No elastic gel pushes less as a press goes deeper: a thin part has slipped between
+            // the nodes of the mesh.
             let before_n = lesson.frames.last().map_or(0.0, |before| before.force_n.z);
             if force_n.z > before_n {
                 break;
@@ -241,7 +247,8 @@ impl Teacher {
         Ok(lesson)
     }
 
-    /// Where a shape first touches the gel on its way down through a pose; none beside the gel.
+    /// The pose at which a shape first touches the gel on its way down through a pose; `None`
+    /// beside the gel.
     fn touch(&self, shape: &Shape, above: &Pose) -> Result<Option<Pose>, TeachError> {
         let gel = Gel::new(Arc::clone(&self.sensor), SimulateSettings::default());
         match gel.touch(shape, above) {
@@ -251,12 +258,12 @@ impl Teacher {
     }
 }
 
-/// Whether a press came as deep as it was to go.
+/// Whether a press reached its full depth.
 fn is_whole(press: &Lesson) -> bool {
     press.frames.len() == N_FRAMES as usize
 }
 
-/// The poses of a slide, from where the shape is down.
+/// The poses of a sliding press, from the pose in which the shape is down.
 fn on_the_way(down: Pose, slide: &Slide) -> impl Iterator<Item = Pose> {
     (1..=N_SLIDE_FRAMES).map(move |frame| {
         let part = f64::from(frame) / f64::from(N_SLIDE_FRAMES);

@@ -1,4 +1,4 @@
-//! Presses unlike those that are taught, to see that they are told from them.
+//! Out-of-distribution (OOD) presses, with which the OOD score is tested.
 
 use std::f64::consts::TAU;
 
@@ -11,17 +11,17 @@ use twintac_shape::{Part, Pose, Shape};
 
 use crate::draw::{Draw, LARGEST_TILT, deepest_mm, scale, simple, upright};
 
-/// What is strange about a press.
+/// A kind of out-of-distribution press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strange {
-    /// Taught shapes, deeper than any is taught.
+    /// Training shapes, deeper than any training press.
     Deeper,
-    /// Balls and rods that are thinner than those that are taught.
+    /// Balls and rods that are thinner than those of training presses.
     Thin,
-    /// Wedges that are sharper.
+    /// Wedges that are sharper than those of training presses.
     Sharp,
-    /// Taught shapes, tilted more.
+    /// Training shapes with a larger tilt.
     Tilted,
     /// Six small balls at once.
     Crowded,
@@ -31,7 +31,7 @@ impl Strange {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Deeper, Self::Thin, Self::Sharp, Self::Tilted, Self::Crowded];
 
-    /// In a word.
+    /// The name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,7 +43,7 @@ impl Strange {
         }
     }
 
-    /// A press, and the depth from which it is strange, mm.
+    /// A press, and the depth from which it is out of distribution, mm.
     pub(crate) fn draw(self, sensor: &Sensor, random: &mut RandomStream) -> (Draw, f64) {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let within = DVec2::new(random.random(), random.random());
@@ -84,7 +84,7 @@ impl Strange {
                 height_mm: 10.0 * scale,
                 edge_radius_mm: scale * random.random_range(0.1..0.3),
             },
-            // A ball looks the same, however it is turned.
+            // No ball: it looks the same at any tilt.
             Self::Tilted => simple(random.random_range(1..5), scale, random),
             Self::Crowded => {
                 let parts = (0..6).map(|number| {

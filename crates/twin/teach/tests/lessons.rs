@@ -1,4 +1,4 @@
-//! Lessons repeat, and the fast gel that is built in agrees with presses that it was not taught.
+//! Presses are reproducible, and the built-in surrogate agrees with test presses.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 

@@ -1,4 +1,6 @@
-"""The casting jig: a bed for the board with its parts below, to which port plate and mould are screwed."""
+"""The casting jig: a bed for the board with its parts below. Port plate and mould are screwed to
+it.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +12,12 @@ from mechanics.layout import Layout, Rectangle
 from mechanics.parts.mould_halves import CORNER
 from mechanics.sketch import FAR, box, nut_trap, plate_footprint, rounded_box, screw_hole
 
-# The jig's rim stays below the port plate's face: the screws press the mould on the plate, not on the jig.
+# The jig's rim is lower than the port plate's face: the screws press the mould on the plate, not on
+# the jig.
 BELOW_PLATE = 0.5
-# Slots beside the board, for fingers.
+# Width of the slots beside the board, for fingers.
 FINGER_WIDTH = 16.0
-# The board lies on a ledge as wide as this.
+# Width of the ledge on which the board lies.
 LEDGE = 1.5
 
 
@@ -25,12 +28,12 @@ def _room(part: BoardPart) -> Rectangle:
 
 
 def casting_jig(layout: Layout) -> Part:
-    """The bed."""
+    """Makes the jig."""
     top = -BELOW_PLATE
     jig = rounded_box(layout.mould_box, CORNER, layout.jig_z, top, chamfers=(True, False))
     jig -= plate_footprint(layout, fits.FIT, layout.board.bottom_z, top + 1.0)
     inner = layout.board_box.grown(-LEDGE)
-    # The board's ears lie on the jig: its parts are between them.
+    # The board's ears lie on the jig; the board's parts are between them.
     ears = [hole[0] for hole in layout.board.holes]
     middle = layout.gel.center[0]
     x0 = max([x for x in ears if x < middle], default=inner.x0) + 3.0

@@ -1,6 +1,8 @@
-"""A plate between the lid and a robot's flange ISO 9409-1-50-4-M6: four M6 on 50 mm, centring 31.5 mm, pin 6 mm.
+"""A plate between the lid and the flange of a robot, ISO 9409-1-50-4-M6: four M6 on 50 mm, centring
+31.5 mm, pin 6 mm.
 
-The flange's sizes are not checked against the standard's text or a robot: measure yours first.
+The sizes of the flange have not been compared with the text of the standard or with a robot:
+measure your flange first.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ THICKNESS = 10.0
 PITCH_RADIUS = 25.0
 CENTRING_RADIUS, CENTRING_HEIGHT = 15.75, 3.0
 PIN_RADIUS, PIN_DEPTH = 3.0, 6.5
-# What holds the nuts of the lid's screws.
+# Thickness of the material that holds the nuts of the lid's screws.
 FLOOR = 4.0
 
 
@@ -30,14 +32,14 @@ def flange_screws(layout: Layout) -> tuple[Fastener, ...]:
 
 
 def bolts_at(layout: Layout) -> list[Point]:
-    """The M6 bolts: at 45°, so that the sensor's long side lies between them."""
+    """Locations of the M6 bolts: at 45°, so that the long side of the sensor lies between them."""
     x, y = layout.outer.center
     reach = PITCH_RADIUS / math.sqrt(2.0)
     return [(x + sx * reach, y + sy * reach) for sy in (-1, 1) for sx in (-1, 1)]
 
 
 def flange_plate(layout: Layout) -> Part:
-    """A disc with sunk bolt heads: they are tightened before the sensor is mounted."""
+    """A disc with recessed bolt heads: the bolts are tightened before the sensor is mounted."""
     at, top = layout.outer.center, layout.lid_z
     low = top - THICKNESS
     disc = rod(at, RADIUS, low + fits.CHAMFER, top) + cone(at, RADIUS - fits.CHAMFER, RADIUS, low, low + fits.CHAMFER)

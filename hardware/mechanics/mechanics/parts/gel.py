@@ -1,4 +1,4 @@
-"""The gel as a solid: the cavity of its mould, and what stands in pictures. It is not printed."""
+"""The gel as a solid: the cavity of its mould, and the gel in pictures. It is not printed."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from mechanics.sketch import box
 
 
 def gel(of: Gel) -> Part:
-    """The undeformed gel, exact: no facets."""
+    """The exact undeformed gel, without facets."""
     return _block(of) if kind(of) == "block" else _dome(of)
 
 
 def _block(of: Gel) -> Part:
-    """The common part of an arch along x and one along y: two rounded edges meet in a mitre."""
+    """The intersection of an arch along x and one along y: two rounded edges meet in a mitre."""
     block = box(Rectangle(*of.low[:2], *of.high[:2]), of.low[2], of.high[2])
     radius = edge_radius(of)
     if radius == 0.0:
@@ -27,7 +27,9 @@ def _block(of: Gel) -> Part:
 
 
 def _dome(of: Gel) -> Part:
-    """A block below the top's patches: between crown and edges the top is one quadratic patch in each quarter."""
+    """The solid below the patches of the top: between crown and edges, the top is one quadratic
+    patch in each quarter.
+    """
     solid = of.solid
     crown = ends(solid, "crown_at_mm")
     quarters = [
@@ -43,9 +45,9 @@ def _dome(of: Gel) -> Part:
 
 
 def _below_patch(of: Gel, x: tuple[float, float], y: tuple[float, float], crown: tuple[float, float]) -> Part:
-    """What stands below a quarter of the top, down to z = 0.
+    """The solid below a quarter of the top, down to z = 0.
 
-    A quadratic fall is a Bézier patch of degree two, exactly.
+    A quadratic descent is exactly a Bézier patch of degree two.
     """
     curvature = []
     for axis, stands_at, quarter in (("x", crown[0], x), ("y", crown[1], y)):
@@ -56,7 +58,7 @@ def _below_patch(of: Gel, x: tuple[float, float], y: tuple[float, float], crown:
         row = []
         for py in range(3):
             at = (x[0] + (x[1] - x[0]) * px / 2, y[0] + (y[1] - y[0]) * py / 2)
-            # The poles of a² along [a0, a1] are a0², a0 a1, a1²: its polar form.
+            # The poles of a² along [a0, a1] are a0², a0 a1, a1² (its polar form).
             fall = curvature[0] * _polar(x[0] - crown[0], x[1] - crown[0], px)
             fall += curvature[1] * _polar(y[0] - crown[1], y[1] - crown[1], py)
             row.append((at[0], at[1], float(of.solid["crown_mm"]) - fall))

@@ -1,7 +1,7 @@
-"""Indenters: the shapes of the description, on a shank of 8 mm that has a hole for an M4 thread.
+"""Indenters: the shapes of the description, on a shank of 8 mm with a hole for an M4 thread.
 
-A shape is exact up to a height that `exact_to` tells; above it the shank or its collar joins.
-The frame is the shape's: z = 0 is where it first touches, and it stands above.
+A shape is exact up to the height `exact_to`; above it the shank or its collar joins. The frame is
+that of the shape: z = 0 is the point of first touch, and the shape is above it.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from mechanics.layout import Rectangle
 from mechanics.sketch import box, cone, prism, rod
 
 SHANK_RADIUS, SHANK_LENGTH = 4.0, 20.0
-# Tapped to M4, or for a self-cutting screw.
+# The hole is tapped to M4, or used with a self-cutting screw.
 THREAD_RADIUS, THREAD_DEPTH = 1.65, 12.0
 CENTER = (0.0, 0.0)
 KINDS = ("sphere", "cylinder", "box", "x", "ring", "triangle", "wedge")
 
 
 def indenter(of: Indenter) -> Part:
-    """Shape, collar, shank."""
+    """Makes an indenter: shape, collar, shank."""
     solid, height, collar = _shape(of)
     joint = height - float(of.shape.get("edge_radius_mm", 0.0))
     if of.shape["kind"] == "sphere":
@@ -38,7 +38,7 @@ def indenter(of: Indenter) -> Part:
 
 
 def exact_to(of: Indenter) -> float:
-    """Up to this height, mm, the printed form is the described one."""
+    """Height up to which the printed form is the described one, mm."""
     if of.shape["kind"] == "sphere":
         radius = _length(of, "radius_mm")
         return radius + math.sqrt(max(radius**2 - SHANK_RADIUS**2, 0.0)) - 0.1
@@ -59,7 +59,7 @@ def _length(of: Indenter, name: str) -> float:
 
 
 def _shape(of: Indenter) -> tuple[Part, float, float]:
-    """The described solid, its height, and the radius of a collar that bears the shank."""
+    """The described solid, its height, and the radius of a collar that carries the shank."""
     kind = of.shape.get("kind")
     if kind not in KINDS:
         raise GeometryError(
@@ -92,14 +92,16 @@ def _shape(of: Indenter) -> tuple[Part, float, float]:
 
 
 def _rounded(sharp: Part, edge: float) -> Part:
-    """All edges rounded: the same as the solid made smaller and grown by a ball, where all edges are convex."""
+    """The solid with all edges rounded. If all edges are convex, it equals a smaller solid that is
+    grown by a ball.
+    """
     return fillet(sharp.edges(), edge) if edge > 0.0 else sharp
 
 
 def _wedge(of: Indenter, height: float, edge: float) -> Part:
     """A roof that lies along y.
 
-    Its profile, grown by the edges' radius, has sharp corners here, which are then rounded.
+    The profile, grown by the edges' radius, has sharp corners here, which are then rounded.
     """
     tangent = math.tan(_length(of, "angle_rad") / 2.0)
     top = height - edge
@@ -114,7 +116,9 @@ def _wedge(of: Indenter, height: float, edge: float) -> Part:
 
 
 def _cross(of: Indenter, height: float, edge: float) -> Part:
-    """Two crossed bars along the diagonals; the hollow corners are as round as the edges, as far as there is room."""
+    """Two crossed bars along the diagonals; the inner corners have the radius of the edges, as far
+    as there is room.
+    """
     half_length, half_width = _length(of, "length_mm") / 2, _length(of, "width_mm") / 2
     bars = box(Rectangle(-half_length, -half_width, half_length, half_width), 0.0, height)
     bars += box(Rectangle(-half_width, -half_length, half_width, half_length), 0.0, height)
@@ -133,7 +137,7 @@ def _cross(of: Indenter, height: float, edge: float) -> Part:
 
 
 def _round_convex(bars: Part, edge: float, half_length: float) -> Part:
-    """Rounds the rims and the bars' outer corners, not the hollow corners."""
+    """Rounds the rims and the bars' outer corners, but not the inner corners."""
     rims = [*bars.edges().group_by(Axis.Z)[0], *bars.edges().group_by(Axis.Z)[-1]]
     outer = [
         e for e in bars.edges().filter_by(Axis.Z) if max(abs(e.center().X), abs(e.center().Y)) > half_length - 1e-6

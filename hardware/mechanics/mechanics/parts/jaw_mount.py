@@ -1,11 +1,10 @@
 """A mount for the fixed jaw of the SO-101 gripper, held by straps.
 
-Measured in the project's file of the jaw (`Wrist_Roll_Follower_SO101.stl`, TheRobotStudio/SO-ARM100,
-fda892c): two inner planes, the one near
-the tip 1.7 mm higher, 19.6 mm long and 21.6 mm wide, the other 34.2 mm long. The jaw's holes, and its width
-below the lower plane, were not
-measured: so the mount straddles the jaw near the tip only, and straps hold it, not screws. It was never put
-on a gripper.
+The jaw was measured in its project's file (`Wrist_Roll_Follower_SO101.stl`,
+TheRobotStudio/SO-ARM100, fda892c). It has two inner planes: one near the tip, 1.7 mm higher, 19.6
+mm long and 21.6 mm wide, and one that is 34.2 mm long. The jaw's holes, and its width below the
+lower plane, were not measured. Therefore the mount straddles the jaw near the tip only, and is held
+by straps instead of screws. It has not been tried on a gripper.
 """
 
 from __future__ import annotations
@@ -19,10 +18,10 @@ from mechanics.sketch import box, nut_trap, rod, rounded_box
 TIP_LENGTH, BASE_LENGTH, STEP = 19.6, 34.2, 1.7
 JAW_WIDTH = 21.6
 THICKNESS = 5.0
-# What holds the nuts of the lid's screws.
+# Thickness of the material that holds the nuts of the lid's screws.
 FLOOR = 2.0
 CHEEK_WALL, CHEEK_HEIGHT = 2.4, 6.0
-# Slots for cable ties or hook-and-loop straps.
+# Size of the slots for cable ties or hook-and-loop straps.
 SLOT_LENGTH, SLOT_WIDTH = 6.0, 2.0
 
 
@@ -32,7 +31,7 @@ def jaw_screws(layout: Layout) -> tuple[Fastener, ...]:
 
 
 def jaw_mount(layout: Layout) -> Part:
-    """A plate below the lid; +x is the jaw's tip."""
+    """A plate below the lid; the jaw's tip is at +x."""
     x, y = layout.outer.center
     top = layout.lid_z
     under = top - THICKNESS

@@ -1,4 +1,4 @@
-"""The lid: the bottom plate with the nuts of the screws that hold shell, port plate and board."""
+"""The lid: the bottom plate, with the nuts of the screws that hold shell, port plate and board."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from mechanics.sketch import cone, nut_trap, plate_footprint, rod, rounded_box, 
 
 
 def lid(layout: Layout) -> Part:
-    """A plate with a post below each ear of the board, and two countersunk holes towards a mount."""
+    """A plate with a post below each ear of the board, and two countersunk holes for the screws of
+    a mount.
+    """
     plate = rounded_box(layout.outer, layout.corner, layout.lid_z, layout.parts_z, chamfers=(True, False))
     inside = plate_footprint(layout, 0.0, layout.parts_z, layout.board.bottom_z)
-    # The trap's corners reach beyond the post: they have a wall of their own above.
+    # The corners of the trap reach beyond the post, so they have their own wall above.
     corner = (M2.nut_flats + fits.FIT) / math.sqrt(3.0)
     for screw in layout.sensor_screws:
         post = rod(screw.at, M2.hole_radius + fits.MIN_WALL, layout.parts_z - 0.5, layout.board.bottom_z)

@@ -1,4 +1,4 @@
-"""The mould's cover: the gel's top, with a fill hole for a syringe and vents."""
+"""The mould's cover: the form of the gel's top, with a fill hole for a syringe and vents."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from mechanics.sketch import cone, rod, rounded_box, screw_hole
 
 
 def mould_cover(layout: Layout) -> Part:
-    """The roof over the halves.
+    """The cover on the halves.
 
-    It lifts off upright; the gel's sides are upright there, and silicone gives way: no draft.
+    It is lifted straight up. It needs no draft: the gel's sides are upright there, and silicone is
+    soft.
     """
     low, top = layout.parting_z, layout.cover_z
     cover = rounded_box(layout.mould_box, CORNER, low, top, chamfers=(False, True))

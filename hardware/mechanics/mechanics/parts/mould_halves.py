@@ -1,7 +1,7 @@
-"""The mould's two halves: walls around the gel's upright sides, parted from corner to corner.
+"""The mould's two halves: walls around the gel's upright sides, divided from corner to corner.
 
-Each half has one long and one short wall and moves away diagonally, so no wall slides along the gel: neither
-draft nor force is needed.
+Each half has one long and one short wall and is removed diagonally. So no wall slides along the
+gel, and neither draft nor force is needed.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from mechanics.parts.gel import gel
 from mechanics.screws import M2
 from mechanics.sketch import FAR, box, cone, prism, rod, rounded_box, screw_hole
 
-# Round corners, for a cable tie around both halves; its groove fits ties up to 3.6 mm wide.
+# Round corners for a cable tie around both halves; the groove fits ties up to 3.6 mm wide.
 CORNER = 6.0
 TIE_WIDTH, TIE_DEPTH = 4.2, 1.2
-# A pin on each half, which the cover sits on.
+# A pin on each half, on which the cover sits.
 PIN_RADIUS, PIN_HEIGHT = 2.0, 2.0
 
 
 def pins_at(layout: Layout) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The pins: on the long walls' middles, that of half a first."""
+    """Locations of the pins: at the middles of the long walls, that of half A first."""
     x = layout.gel.center[0]
     return ((x, layout.clamp_y[0]), (x, layout.clamp_y[1]))
 
@@ -47,7 +47,7 @@ def _walls(layout: Layout) -> Part:
 
 
 def _lower_left(layout: Layout) -> Part:
-    """All that is below the seam, which leaves the gel's corners at 45°."""
+    """Everything below the seam, which leaves the gel's corners at 45°."""
     r, far = layout.gel, FAR
     a, b = (r.x0, r.y1), (r.x1, r.y0)
     corners = [a, (a[0] - far, a[1] + far), (a[0] - far, b[1] - far), (b[0] + far, b[1] - far), b]

@@ -1,6 +1,7 @@
 """The port plate.
 
-As thick as a chip is high, so that the gel stands on a plane. Chips look through it; silicone grips it.
+Its thickness is the height of a chip, so that the gel stands on a plane. Chips stand in its holes,
+and silicone grips it.
 """
 
 from __future__ import annotations
@@ -19,9 +20,11 @@ ROUNDING = 0.5
 
 
 def anchors(layout: Layout) -> list[Point]:
-    """Places where silicone flows through the plate and grips it, as many as there is room for.
+    """Locations at which silicone flows through the plate and grips it, as many as there is room
+    for.
 
-    Corners first, then the short edges, the long ones, the inside: a gel peels off from its corners.
+    Corners come first, then the short edges, the long ones and the inside, because a gel peels off
+    from its corners.
     """
     rim = layout.gel.grown(-fits.ANCHOR_INSET)
     nx, ny = (round(2.0 * length) for length in (rim.x1 - rim.x0, rim.y1 - rim.y0))
@@ -52,9 +55,9 @@ def port_plate(layout: Layout) -> Part:
 
 
 def potting_volume(layout: Layout) -> float:
-    """Silicone below z = 0.
+    """Volume of the silicone below z = 0, mm³: around the chips and in the anchors.
 
-    Around the chips and in the anchors, mm³. The recess in a chip's cap is not known, and not in it.
+    The recess in a chip's cap is unknown and not included.
     """
     height = -layout.board.top_z
     body_x, body_y = layout.geometry.chip.body

@@ -1,4 +1,6 @@
-"""The shell: a frame around the sides of gel and board, put over them from above. The lid closes it below."""
+"""The shell: a frame around the sides of gel and board, put over them from above. The lid closes it
+at the bottom.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +11,14 @@ from mechanics.layout import Layout, Rectangle
 from mechanics.screws import M2
 from mechanics.sketch import FAR, box, plate_footprint, rod, rounded_box, screw_hole
 
-# Beside the connector, so that a plug's housing passes.
+# Clearance beside the connector, so that a plug's housing passes.
 PLUG_GAP = 1.0
 
 
 def shell(layout: Layout) -> Part:
-    """Walls up to the described height at the described gap.
+    """Walls of the described height at the described gap.
 
-    Ears over the board's ends, in which the screws' heads lie.
+    Ears over the board's ends contain the heads of the screws.
     """
     frame = rounded_box(layout.outer, layout.corner, layout.parts_z, layout.rim_z, chamfers=(False, True))
     frame -= plate_footprint(layout, fits.FIT, layout.parts_z - 1.0, 0.0)
@@ -27,7 +29,7 @@ def shell(layout: Layout) -> Part:
 
 
 def cable_exit(layout: Layout) -> Part:
-    """A slot before the connector, open towards the lid."""
+    """A slot in front of the connector, open towards the lid."""
     connector, toward = layout.board.connector, layout.board.opens_toward
     half = [size / 2 + PLUG_GAP for size in connector.size[:2]]
     x0, y0 = connector.center[0] - half[0], connector.center[1] - half[1]

@@ -1,15 +1,16 @@
-//! What is typed is used or refused.
+//! Every argument is used or refused.
 
 use clap::Parser;
 
 use super::Arguments;
 
-/// Whether a command line is taken.
+/// Whether a command line is accepted.
 fn is_taken(line: &str) -> bool {
     Arguments::try_parse_from(["twintac"].into_iter().chain(line.split(' '))).is_ok()
 }
 
-/// An argument that needs another one is not checked by clap where a third one rules the other out: it would be ignored.
+/// clap does not check that an argument's required argument is present if a third argument excludes
+/// that one. Without checks of our own the argument would be ignored.
 #[test]
 fn no_argument_is_ignored_beside_another() {
     for line in [

@@ -1,4 +1,4 @@
-//! What can be typed behind `twintac stream` and `twintac ports`.
+//! Arguments of `twintac stream` and `twintac ports`.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,8 @@ use clap::{ArgGroup, Args, ValueEnum};
 
 use super::Wire;
 
-/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` and `--log` they are a dashboard.
+/// Start when nothing touches the sensor: the first frames are used for the tare. Without
+/// `--format` and `--log` the frames are shown on a dashboard.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("source").required(true), group = ArgGroup::new("written").multiple(true))]
 pub(crate) struct Stream {
@@ -15,50 +16,53 @@ pub(crate) struct Stream {
     /// Sensor description (TOML) [default: PhysTac].
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: Option<PathBuf>,
-    /// How zeros move with temperature (TOML), as `twintac characterize` found it: it is taken off the readings.
+    /// Temperature coefficients of the zeros (TOML), made by `twintac characterize`: readings are
+    /// compensated.
     #[arg(long, value_name = "FILE")]
     pub(crate) temperature: Option<PathBuf>,
-    /// Rows on standard output instead of the dashboard.
+    /// Write rows to standard output instead of the dashboard.
     #[arg(long, value_enum, group = "written")]
     pub(crate) format: Option<RowFormat>,
-    /// Record all frames as they come into this log (MCAP), beside the rows of --format or alone, until the program is ended.
+    /// Record all frames as they come into this log (MCAP), with or without the rows of --format,
+    /// until the program ends.
     #[arg(long, value_name = "FILE", value_parser = log_file, group = "written")]
     pub(crate) log: Option<PathBuf>,
-    /// End after so many frames.
+    /// End after this many frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "written", conflicts_with = "out")]
     pub(crate) frames: Option<u64>,
-    /// End after so long, s.
+    /// End after this time, s.
     #[arg(long, value_name = "S", value_parser = duration_s, requires = "written", conflicts_with = "out")]
     pub(crate) seconds: Option<f64>,
-    /// Folder of the dashboard's recordings (MCAP).
+    /// Folder of the recordings that the dashboard makes (MCAP).
     #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "written")]
     pub(crate) out: PathBuf,
 }
 
-/// `twintac ports`.
+/// Arguments of `twintac ports`.
 #[derive(Debug, Args)]
 pub(crate) struct Ports {
-    /// Listens to each serial port for so long, s, and says what comes: many boards start anew when their port is opened.
+    /// Listen to each serial port for this time, s, and describe what arrives; many boards restart
+    /// when their port is opened.
     #[arg(long, value_name = "S", value_parser = duration_s)]
     pub(crate) listen: Option<f64>,
-    /// Bits a second to listen at.
+    /// Baud rate for listening.
     #[arg(long, value_name = "BAUD", default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(300..))]
     pub(crate) baud: u32,
-    /// JSON on standard output.
+    /// Print JSON on standard output.
     #[arg(long)]
     pub(crate) json: bool,
 }
 
-/// How frames are written.
+/// Format of the rows.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum RowFormat {
-    /// Comma-separated values under a header.
+    /// Comma-separated values with a header.
     Csv,
-    /// A JSON object a line.
+    /// One JSON object per line.
     Jsonl,
 }
 
-/// A name of a log.
+/// The name of a log.
 fn log_file(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     if path.extension().is_some_and(|extension| extension == "mcap") {
@@ -68,7 +72,7 @@ fn log_file(name: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// A time, s, that passes.
+/// A positive duration, s.
 fn duration_s(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => Ok(seconds),

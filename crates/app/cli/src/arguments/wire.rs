@@ -1,4 +1,4 @@
-//! Where frames of a sensor come from.
+//! Sources of a sensor's frames.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -7,31 +7,34 @@ use clap::Args;
 use twintac_live::Origin;
 use twintac_source::Known;
 
-/// A sensor that sends frames, or what stands for one.
+/// A sensor that sends frames, or a replacement for one.
 #[derive(Args, Debug)]
 pub(crate) struct Wire {
     /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
     #[arg(long, value_name = "PATH", group = "source")]
     bus: Option<PathBuf>,
-    /// Serial port that a microcontroller writes frames to, such as /dev/ttyACM0; `twintac ports` lists what is plugged in.
+    /// Serial port to which a microcontroller writes frames, such as /dev/ttyACM0; `twintac ports`
+    /// lists the ports.
     #[arg(long, value_name = "PORT", group = "source", requires = "line")]
     serial: Option<String>,
-    /// Address where frames come as datagrams, such as 0.0.0.0:9000.
+    /// Address at which frames arrive as datagrams, such as 0.0.0.0:9000.
     #[arg(long, value_name = "ADDRESS", group = "source", requires = "line")]
     udp: Option<String>,
-    /// How frames stand on the serial line or in datagrams (TOML).
+    /// Description of the frames on the serial line or in datagrams (TOML).
     #[arg(long, value_name = "FILE", conflicts_with_all = ["bus", "lab", "replay"], requires = "source")]
     line: Option<PathBuf>,
-    /// A log (MCAP), played at its own pace.
+    /// Log (MCAP) that is replayed at its own pace.
     #[arg(long, value_name = "FILE", group = "source")]
     replay: Option<PathBuf>,
-    /// The emulated sensor, pressed by a slow motion.
+    /// Use the emulated sensor, pressed by a slow motion.
     #[arg(long, group = "source")]
     lab: bool,
-    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
+    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the
+    /// value of the sensor description].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), requires = "source")]
     scale: Option<u16>,
-    /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
+    /// Altitude of the sensor, m; the scale is checked against the pressure of free air there
+    /// [default: anything up to 2000].
     #[arg(
         long,
         value_name = "M",
@@ -43,7 +46,7 @@ pub(crate) struct Wire {
 }
 
 impl Wire {
-    /// None: none was named.
+    /// The named source; `None` if none was named.
     pub(crate) fn origin(&self) -> Option<Origin> {
         let line = self.line.clone().unwrap_or_default();
         if let Some(bus) = &self.bus {
@@ -59,7 +62,7 @@ impl Wire {
         }
     }
 
-    /// What a person says of the barometers.
+    /// What a person states about the barometers.
     pub(crate) fn known(&self) -> Known {
         Known {
             counts_per_pa: self.scale,

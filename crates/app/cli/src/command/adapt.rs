@@ -1,4 +1,5 @@
-//! `twintac adapt`: a model adapted to another sensor, and its error over the number of presses.
+//! `twintac adapt`: adapts a model to another sensor, or measures the error over the number of
+//! presses.
 
 use std::path::Path;
 
@@ -70,7 +71,7 @@ fn adapted(found: &AdaptedModel) -> String {
     )];
     for (file, height) in &adaptation.contact_offset_mm {
         lines.push(format!(
-            "{file}: contact {:+.3} mm ± {:.3}",
+            "{file}: contact height {:+.3} mm ± {:.3}",
             height.value, height.uncertainty
         ));
     }
@@ -83,14 +84,17 @@ fn adapted(found: &AdaptedModel) -> String {
     let taxels = found.taxels.iter().zip(&adaptation.gain).zip(&found.learned_gain);
     for (taxel, ((name, gain), learned)) in taxels.enumerate() {
         let mut line = format!(
-            "{name}: gain {:.4} ± {:.4} (learned {learned:.4})",
+            "{name}: gain {:.4} ± {:.4} (before {learned:.4})",
             gain.value, gain.uncertainty
         );
         if let Some(law) = adaptation.stiffening_per_kpa.get(taxel) {
-            line += &format!(", port law {:+.4} ± {:.4} per kPa", law.value, law.uncertainty);
+            line += &format!(
+                ", static nonlinearity {:+.4} ± {:.4} per kPa",
+                law.value, law.uncertainty
+            );
         }
         for share in adaptation.memory.get(taxel).into_iter().flatten() {
-            line += &format!(", memory {:.3} ± {:.3}", share.value, share.uncertainty);
+            line += &format!(", relaxation {:.3} ± {:.3}", share.value, share.uncertainty);
         }
         lines.push(line);
     }
@@ -103,7 +107,7 @@ fn adapted(found: &AdaptedModel) -> String {
     }));
     if let (Some(twin), Some(learned)) = (&found.twin, &found.as_learned) {
         lines.push(format!(
-            "nearest in contact {}, all {}, on {} presses that it was not adapted with; as learned {}",
+            "nearest in contact {}, all {}, on {} presses that it was not adapted with; before adaptation {}",
             percent(twin.overall.nearest_in_contact_percent),
             percent(twin.overall.all_percent),
             found.judged_presses,
@@ -118,11 +122,11 @@ fn adapted(found: &AdaptedModel) -> String {
 fn table(found: &AdaptationCurve) -> String {
     let mut lines = vec![
         format!(
-            "{} ({} data), {} presses that no twin saw; nearest taxel, frames in contact",
+            "{} ({} data), {} held-out presses; nearest taxel, frames in contact",
             found.sensor, found.provenance, found.judged_presses
         ),
         format!(
-            "as learned         {}",
+            "before adaptation  {}",
             percent(found.as_learned.nearest_in_contact_percent)
         ),
     ];

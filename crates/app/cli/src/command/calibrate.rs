@@ -1,4 +1,4 @@
-//! `twintac calibrate`: the gel's material from measured presses.
+//! `twintac calibrate`: fits the gel's material to measured presses.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::arguments::Calibrate;
 use crate::output::print;
 use crate::progress::Bars;
 
-/// Fits, and prints or writes what came of it.
+/// Fits, and prints or writes the result.
 pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let names: Vec<String> = arguments.free.iter().map(|name| name.trim().to_owned()).collect();
@@ -57,7 +57,7 @@ fn measured(
     Ok(curves.collect::<Result<_, _>>()?)
 }
 
-/// The unknowns with their intervals, and what to doubt, for people.
+/// Prints the unknowns with their intervals, and warnings, for people.
 fn tell(fit: &Fit, kinds: &str) -> Result<()> {
     let mut out = std::io::stderr().lock();
     writeln!(

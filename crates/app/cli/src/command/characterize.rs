@@ -1,4 +1,4 @@
-//! `twintac characterize`: what a sensor does, from recorded presses.
+//! `twintac characterize`: measures a sensor's properties in recorded presses.
 
 use anyhow::Result;
 use twintac_recorded::{COMPENSATION, Recorded};
@@ -10,7 +10,7 @@ use crate::arguments::Characterize;
 use crate::output::print;
 use crate::progress::Bars;
 
-/// Characterizes, and prints or writes what was found.
+/// Characterizes, and prints or writes the result.
 pub(crate) fn run(arguments: &Characterize) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?.sensor;
     let import = arguments.import.as_deref().map(read_import).transpose()?;

@@ -32,7 +32,10 @@ fn table(found: &CrossValidation, seeds: u64) -> String {
             "{} ({} data), {seeds} seeds: mean ± standard deviation; nearest taxel, frames in contact",
             found.sensor, found.provenance
         ),
-        format!("{:<width$}  {:<14}  {:<14}", "held out", "twin", "fitted curve"),
+        format!(
+            "{:<width$}  {:<14}  {:<14}",
+            "held out", "twin", "parametric baseline"
+        ),
     ];
     for row in &found.rows {
         let twin = row.twin.as_ref().map_or_else(|| "none".to_owned(), spread);
@@ -49,14 +52,14 @@ fn table(found: &CrossValidation, seeds: u64) -> String {
         lines.extend(sureness(&row.certainty));
         if let Some(percent) = row.frames_not_simulated_percent.filter(|percent| *percent > 0.0) {
             lines.push(format!(
-                "  {percent:.1} % of these frames lie deeper than the simulation went"
+                "  {percent:.1} % of these frames are deeper than the simulation"
             ));
         }
     }
     lines.join("\n")
 }
 
-/// What the 90 % intervals cover, and how well another kind of contact is told.
+/// Coverage of the 90 % intervals, and AUROC of the OOD score.
 fn sureness(found: &CertaintySpread) -> Vec<String> {
     let spread = |spread: &Spread| format!("{:.1} ± {:.1} %", spread.mean_percent, spread.deviation_percent);
     let mut lines = Vec::new();
@@ -67,7 +70,7 @@ fn sureness(found: &CertaintySpread) -> Vec<String> {
         &found.flagged,
     ) {
         lines.push(format!(
-            "  90 % intervals cover {} of the readings, {} in contact; there they are {} wide, and {} of the frames are flagged",
+            "  90 % intervals cover {} of the readings, {} in contact; there they are {} wide, and {} of the frames are flagged as out of distribution",
             spread(covered),
             spread(in_contact),
             spread(width),
@@ -75,10 +78,7 @@ fn sureness(found: &CertaintySpread) -> Vec<String> {
         ));
     }
     if let Some(told_apart) = &found.told_apart {
-        lines.push(format!(
-            "  told from what taught: area under the curve {}",
-            spread(told_apart)
-        ));
+        lines.push(format!("  OOD detection: AUROC {}", spread(told_apart)));
     }
     lines
 }

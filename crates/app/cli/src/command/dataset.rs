@@ -1,4 +1,4 @@
-//! `twintac dataset`: many simulated presses, shard by shard.
+//! `twintac dataset`: simulates many presses, shard by shard.
 
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn in_words(made: &MadeShard) -> String {
     )
 }
 
-/// Says what a whole data set has.
+/// Prints the summary of a complete data set.
 fn tell(whole: &WholeDataset, as_json: bool) -> Result<()> {
     say_left_out(&whole.left_out);
     print(&if as_json {
@@ -51,7 +51,7 @@ fn tell(whole: &WholeDataset, as_json: bool) -> Result<()> {
     } else {
         let merged = whole.merged.as_ref();
         format!(
-            "{}{} shards, {} presses, {} frames, {}: all as they were made",
+            "{}{} shards, {} presses, {} frames, {}: all unchanged",
             merged.map_or(String::new(), |file| format!("{}: ", file.display())),
             whole.n_shards,
             whole.n_presses,

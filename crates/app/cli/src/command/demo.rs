@@ -1,4 +1,4 @@
-//! `twintac demo`: the emulated bench, from nothing.
+//! `twintac demo`: every stage on the emulated bench.
 
 use anyhow::Result;
 use twintac_run::Run;

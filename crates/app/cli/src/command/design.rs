@@ -1,4 +1,4 @@
-//! `twintac design`: sensors compared before one is cast.
+//! `twintac design`: compares designs of a sensor before one is cast.
 
 use anyhow::Result;
 use twintac_design::{Design, Designs, Figures, Measure, Plan, Wishes, search};
@@ -9,10 +9,10 @@ use crate::arguments::Design as Arguments;
 use crate::output::print;
 use crate::progress::say;
 
-/// Designs that are printed if there are more.
+/// Most designs that are printed.
 const MOST_ROWS: usize = 20;
 
-/// Judges the designs, and prints those that no other beats.
+/// Evaluates the designs, and prints the Pareto front.
 pub(super) fn run(arguments: &Arguments, program: &Program) -> Result<()> {
     let sensor = match &arguments.sensor {
         Some(path) => SensorFile::read(path)?,
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, program: &Program) -> Result<()> {
         .collect();
     if let Some(first) = refused.first() {
         say(&format!(
-            "{} of {} designs cannot be judged; the first, {}: {}",
+            "{} of {} designs cannot be evaluated; the first, {}: {}",
             refused.len(),
             found.designs.len(),
             first.number,
@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, program: &Program) -> Result<()> {
         ));
     }
     if best.is_none() {
-        say("no design is as good as it needs to be (--need): best.toml is not written");
+        say("no design meets the requirements (--need): best.toml is not written");
     }
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
@@ -81,7 +81,7 @@ pub(super) fn run(arguments: &Arguments, program: &Program) -> Result<()> {
     Ok(())
 }
 
-/// The designs that no other beats, the best of them marked: what was varied, and the goals.
+/// Prints the designs of the Pareto front with their variables and goals; the best one is marked.
 fn print_front(found: &Designs, wishes: &Wishes, best: Option<usize>) -> Result<()> {
     let front = found.front(wishes);
     let names = found.fields.iter().map(String::as_str);
@@ -107,14 +107,14 @@ fn print_front(found: &Designs, wishes: &Wishes, best: Option<usize>) -> Result<
     }
     if shown.len() > MOST_ROWS {
         print(&format!(
-            "{MOST_ROWS} of {} that no other beats; designs.csv has all",
+            "{MOST_ROWS} of {} Pareto-optimal designs; designs.csv has all",
             shown.len()
         ))?;
     }
     Ok(())
 }
 
-/// A number as wide as the name of its column.
+/// A number, as wide as the name of its column.
 fn cell(value: Option<f64>, name: &str) -> String {
     let width = name.len();
     value.map_or(format!("{:>width$}", "none"), |value| {

@@ -1,4 +1,4 @@
-//! `twintac export`: frames of logs as tables, and logs for others.
+//! `twintac export`: exports frames of logs as tables, and logs to other formats.
 
 use std::path::Path;
 
@@ -52,7 +52,7 @@ fn for_ros(arguments: &Export, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Says what was found in a log, and into which file it was written.
+/// Prints the content of a log, and the file that was written.
 fn tell(
     arguments: &Export,
     log: &Path,

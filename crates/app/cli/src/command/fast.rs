@@ -1,4 +1,4 @@
-//! `twintac fast`: the twin without finite elements.
+//! `twintac fast train`: trains a surrogate of the gel.
 
 use anyhow::Result;
 use twintac_fast::{GroupErrors, Judgement};
@@ -10,7 +10,7 @@ use crate::Program;
 use crate::arguments::FastTrain;
 use crate::output::print;
 
-/// Trains, and prints how far the fast twin is from the solved gel.
+/// Trains, and prints the errors of the surrogate against the FEM solution.
 pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let mut settings = FastSettings::default();
@@ -33,7 +33,7 @@ pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     }
     let path = arguments.out.join(FAST_GEL);
     print(&format!(
-        "{}: {} presses taught; errors against the solved gel, % of each press's largest (simulated)",
+        "{}: {} training presses; errors against the FEM solution, % of each press's largest value (simulated)",
         path.display(),
         found.n_taught
     ))?;
@@ -44,7 +44,7 @@ pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     print_group("held-out presses", &found.held_out.overall)?;
     print_judgement(found.exams_name(), &found.exams)?;
     if found.slides.overall.is_some() {
-        print_group("the same, sliding and tilting", &found.slides.overall)?;
+        print_group("test presses that slide and tilt", &found.slides.overall)?;
     }
     if let Some(strange) = &found.strange {
         print_strange(strange)?;
@@ -57,7 +57,7 @@ const NAME: usize = 46;
 
 fn print_strange(found: &Told) -> Result<()> {
     print(&format!(
-        "unlike all that was taught: errors, flagged %, how often they look stranger than held-out presses, of which {} % are flagged",
+        "out of distribution: errors, flagged %, AUROC % of the OOD score; of the held-out presses, {} % are flagged",
         figure(found.familiar_flagged_percent, 1)
     ))?;
     for (kind, told) in &found.kinds {
@@ -81,25 +81,29 @@ fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
     }
     print(&format!(
         "{:<NAME$} {:>7} {:>8}",
-        "  read while nothing touches",
+        "  reading without contact",
         "",
         figure(found.untouched_percent, 2)
     ))?;
     for (novelty, errors) in &found.by_novelty {
-        print_group(&format!("  {novelty} contacts"), errors)?;
+        let kind = match novelty.as_str() {
+            "familiar" => "in-distribution",
+            _ => "out-of-distribution",
+        };
+        print_group(&format!("  {kind} contacts"), errors)?;
     }
     for (number, (place, errors)) in found.by_place.iter().enumerate() {
         let middle = if number == 0 { "middle, " } else { "" };
         print_group(&format!("  {middle}{place} of the way to a corner"), errors)?;
     }
-    print_group("  edge, within half the gel's height of it", &found.at_edge)
+    print_group("  within half the gel's height of the edge", &found.at_edge)
 }
 
 fn print_group(name: &str, found: &Option<GroupErrors>) -> Result<()> {
     print(&group(name, found))
 }
 
-/// A line of the table: a group without frames says so.
+/// A line of the table. A group without frames says so.
 fn group(name: &str, found: &Option<GroupErrors>) -> String {
     let Some(errors) = found else {
         return format!(
@@ -117,7 +121,7 @@ fn group(name: &str, found: &Option<GroupErrors>) -> String {
     )
 }
 
-/// A figure with so many decimals; what rests on nothing is none.
+/// A figure with this many decimals, or `none`.
 fn figure(value: Option<f64>, decimals: usize) -> String {
     value.map_or("none".to_owned(), |value| format!("{value:.decimals$}"))
 }

@@ -1,4 +1,4 @@
-//! Files that are given by name or by pattern.
+//! Files that are named or matched by a pattern.
 
 use std::path::{Path, PathBuf};
 
@@ -10,8 +10,9 @@ use twintac_work::Progress;
 
 use crate::progress::Bars;
 
-/// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters; the
-/// folder of a bag of ROS 2 is its files.
+/// The files that names and patterns match, sorted; each has to match at least one. An existing
+/// path is taken literally, even if it contains special characters. The folder of a ROS 2 bag
+/// stands for its files.
 pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for pattern in patterns {
@@ -24,7 +25,7 @@ pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
         }
         let found = glob::glob(&of_names(pattern)).with_context(|| {
             format!(
-                "`{pattern}` is not there, and is no pattern of files; in a pattern, `[[]` stands for `[`"
+                "`{pattern}` does not exist and is not a pattern of files; in a pattern, `[[]` stands for `[`"
             )
         })?;
         let before = files.len();
@@ -42,7 +43,7 @@ pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// The pattern in which the folders that it begins with, as far as they are there by name, stand for themselves.
+/// The pattern, in which the leading folders that exist by name are escaped.
 fn of_names(pattern: &str) -> String {
     let (mut known, mut rest) = (PathBuf::new(), Path::new(pattern).components());
     for component in Path::new(pattern).components() {
@@ -59,7 +60,7 @@ fn of_names(pattern: &str) -> String {
     escaped + &rest.as_path().to_string_lossy()
 }
 
-/// The files of a recording of ROS 2, if a folder is one.
+/// The files of a ROS 2 recording, if the folder is one.
 fn of_bag(folder: &Path) -> Vec<PathBuf> {
     if !folder.join("metadata.yaml").is_file() {
         return Vec::new();
@@ -71,7 +72,7 @@ fn of_bag(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Reads files of others as a description says, and says what was found in them and left out.
+/// Reads files according to an import description, and prints what was found and left out.
 pub(crate) fn import_aloud(import: &Path, files: &[PathBuf]) -> Result<Recording> {
     let (recording, summary) = import_files(import, files)?;
     let bars = Bars::default();
@@ -81,8 +82,8 @@ pub(crate) fn import_aloud(import: &Path, files: &[PathBuf]) -> Result<Recording
     Ok(recording)
 }
 
-/// Gives recordings the name of the sensor that they are of, where `recorded_as` says that they
-/// have another one for it.
+/// Sets the sensor's name in recordings that use another name for it, if that name is
+/// `recorded_as`.
 pub(crate) fn rename(
     recording: &mut Recording,
     recorded_as: Option<&str>,
@@ -101,7 +102,7 @@ pub(crate) fn rename(
     Ok(())
 }
 
-/// Reads a sensor description, or without a file that of PhysTac.
+/// Reads a sensor description; without a file, that of PhysTac.
 pub(crate) fn sensor_or_phystac(file: Option<&Path>) -> Result<SensorFile> {
     Ok(file.map_or_else(SensorFile::phystac, SensorFile::read)?)
 }

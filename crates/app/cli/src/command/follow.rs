@@ -12,7 +12,7 @@ use crate::arguments::Simulate;
 use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
-/// Follows a path and prints what came of it.
+/// Follows a path and prints the result.
 pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     let simulated = SimulatedPath::follow(gel, path, &Bars::default())?;
     let followed = &simulated.followed;
@@ -26,7 +26,7 @@ pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     }
     match &followed.failure {
         Some(failure) => anyhow::bail!(
-            "{}: the path could not be followed to its end: {failure}; the {} frames printed are good",
+            "{}: the path could not be followed to its end: {failure}; the {} printed frames are valid",
             path.display(),
             followed.frames.len()
         ),
@@ -34,7 +34,8 @@ pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     }
 }
 
-/// Columns with their units, and rows; with a deadline also whether each has settled, and what part of the load is unbalanced.
+/// Columns with their units, and rows. With a deadline, two more columns: whether each frame has
+/// converged, and its residual.
 fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 8] = [
         "provenance",
@@ -74,7 +75,7 @@ fn row(frame: &FollowedFrame) -> Vec<String> {
     row
 }
 
-/// What frames spend their time on, a line each.
+/// Writes how the frames' computing time is divided, one part a line.
 fn write_profile(out: &mut dyn Write, followed: &Followed) -> Result<()> {
     let sum = |of: &dyn Fn(&FollowedFrame) -> f64| followed.frames.iter().map(of).sum::<f64>();
     let total_s = sum(&|frame| frame.wall_time_s);

@@ -1,4 +1,4 @@
-//! `twintac fast imperfection`: how imperfect sensors are, from a trained model and recordings.
+//! `twintac fast imperfection`: estimates sensor variation from a trained model and recordings.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::arguments::FastImperfection;
 use crate::output::print;
 use crate::progress::Bars;
 
-/// Finds the widths, and prints or writes the file of them.
+/// Estimates the widths, and prints or writes their file.
 pub(crate) fn run(arguments: &FastImperfection) -> Result<()> {
     let sensor = match (&arguments.sensor, &arguments.model) {
         (Some(file), _) => SensorFile::read(file)?,
@@ -51,14 +51,14 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
     }
     if let Some(other) = files.iter().find(|file| !is_csv(file)) {
         bail!(
-            "{} is no CSV file, as others are; give either CSV files or Parquet files and logs",
+            "{} is not a CSV file, but others are; give either CSV files or Parquet files and logs",
             other.display()
         );
     }
     let named = arguments.sensor.as_ref().and_then(|_| sensor.import());
     let Some(import) = arguments.import.clone().or(named) else {
         bail!(
-            "nothing says how to read {}; name a file with --import",
+            "there is no import description for {}; name one with --import",
             files[0].display()
         );
     };
@@ -68,7 +68,7 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
     })
 }
 
-/// The command in words, for the head of the file.
+/// The command as text, for the first line of the file.
 fn command(arguments: &FastImperfection) -> String {
     let mut words = "twintac fast imperfection".to_owned();
     let mut add = |name: &str, value: &Option<PathBuf>| {
@@ -94,7 +94,7 @@ fn command(arguments: &FastImperfection) -> String {
     words
 }
 
-/// A word as a shell takes it.
+/// A word, quoted for a shell if necessary.
 fn quoted(word: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "/._-=+:,".contains(letter);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -1,4 +1,5 @@
-//! `twintac locate`: where and how deep a sensor is touched, from its readings, by its trained twin.
+//! `twintac locate`: estimates where and how deep a sensor is touched, from its readings by its
+//! trained twin.
 
 use anyhow::Result;
 use twintac_model::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, sensor_of_model};
@@ -10,7 +11,7 @@ use crate::arguments::Locate;
 use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
-/// Finds what touches in each frame, and prints it; how far off that is goes to standard error.
+/// Prints the estimated contact of each frame. The errors go to standard error.
 pub(crate) fn run(arguments: &Locate) -> Result<()> {
     let files = expand(&arguments.recordings)?;
     let mut recording = match &arguments.import {
@@ -34,7 +35,7 @@ pub(crate) fn run(arguments: &Locate) -> Result<()> {
     }
 }
 
-/// Columns with their units, and rows. What was not found is empty.
+/// Columns with their units, and rows. A cell is empty if no contact was found.
 fn table(located: &Located) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 16] = [
         "provenance",
@@ -84,7 +85,8 @@ fn row(located: &Located, press: &LocatedPress, frame: &LocatedFrame) -> Vec<Str
     ]
 }
 
-/// How far off places and depths are, in a line for presses that taught the twin and one for those that did not.
+/// Errors of locations and depths: one line for presses that the twin was trained on, and one for
+/// the others.
 fn summary(located: &Located) -> String {
     let told = |value: Option<f64>, decimals: usize| match value {
         Some(value) => format!("{value:.decimals$}"),
@@ -95,8 +97,8 @@ fn summary(located: &Located) -> String {
             return String::new();
         };
         format!(
-            "{name}: {} presses, {} frames; place off by {} mm (90 of 100: {}), depth by {} % of the deepest ({}), at the deepest by {} % ({}); \
-             within two deviations {} and {} %\n",
+            "{name}: {} presses, {} frames; median error of the location {} mm (90th percentile {}), of the depth {} % of the largest ({}), at the largest depth {} % ({}); \
+             within two standard deviations {} and {} %\n",
             errors.presses,
             errors.frames,
             told(errors.place_mm.median, 2),
@@ -113,7 +115,7 @@ fn summary(located: &Located) -> String {
         "{}, {:.3} ms a frame\n{}{}",
         located.provenance,
         located.frame_ms,
-        line("presses that taught the twin", &located.taught),
-        line("presses that it never saw", &located.unseen),
+        line("training presses", &located.taught),
+        line("held-out presses", &located.unseen),
     )
 }

@@ -1,4 +1,4 @@
-//! What each command does.
+//! The commands, one file each.
 
 mod adapt;
 mod calibrate;
@@ -32,7 +32,7 @@ use crate::arguments::{Command, FastCommand, SensorCommand};
 
 pub(crate) use record::Stopped;
 
-/// Does what was asked for.
+/// Runs a command.
 pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
     match command {
         Command::Demo(arguments) => demo::run(&arguments, program),

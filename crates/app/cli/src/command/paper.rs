@@ -30,7 +30,7 @@ fn text(found: &PaperMetrics) -> String {
     let mut lines = vec![
         format!("{} data, seed {}", found.provenance, found.seed),
         format!(
-            "twin                  {} on {} presses that it never saw",
+            "twin                  {} on {} held-out presses",
             percent(twin.twin.overall.nearest_in_contact_percent),
             twin.held_out_presses
         ),
@@ -40,7 +40,7 @@ fn text(found: &PaperMetrics) -> String {
         lines.push(format!("the paper's network   {error}"));
     }
     let left = percent(Some(found.material.residual_percent));
-    lines.push(format!("the gel's fit leaves  {left} of the forces"));
+    lines.push(format!("residual of the gel   {left} of the largest force"));
     if let Some(sensitivity) = found.sensor.sensitivity_kpa_per_n {
         lines.push(format!("sensitivity           {sensitivity:6.2} kPa/N"));
     }

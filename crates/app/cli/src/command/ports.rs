@@ -1,4 +1,4 @@
-//! `twintac ports`: what is plugged in, and what it sounds like.
+//! `twintac ports`: lists ports, and describes what arrives there.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::arguments::Ports;
 use crate::output::print;
 use crate::progress::say;
 
-/// A port, in JSON.
+/// A port, for JSON.
 #[derive(Serialize)]
 struct Heard {
     path: String,
@@ -93,7 +93,7 @@ fn in_words(sound: &Sound) -> String {
         }
         None if *lines_per_s > 0.0 => format!("{lines_per_s:.0} lines a second of text{example}"),
         None => format!(
-            "{bytes_per_s:.0} bytes a second that are no text: another rate of bits (`--baud`), or packets"
+            "{bytes_per_s:.0} bytes a second that are not text: another rate of bits (`--baud`), or packets"
         ),
     }
 }

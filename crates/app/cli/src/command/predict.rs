@@ -1,4 +1,4 @@
-//! `twintac predict`: what a sensor would read, by its trained twin.
+//! `twintac predict`: predicts a sensor's readings by its trained twin.
 
 use anyhow::{Context, Result, bail};
 use twintac_model::{Predicted, Predictor};
@@ -7,7 +7,7 @@ use crate::arguments::Predict;
 use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
-/// Predicts along a path or a protocol, and prints what comes of it.
+/// Predicts along a path or a protocol, and prints the result.
 pub(crate) fn run(arguments: &Predict) -> Result<()> {
     let mut predictor = Predictor::open(&arguments.model, arguments.indenter.as_deref())?;
     if let Some(warmer_k) = arguments.warmer_k {
@@ -30,13 +30,13 @@ pub(crate) fn run(arguments: &Predict) -> Result<()> {
         print_csv(table(&predicted))?;
     }
     if let Some(failure) = &predicted.failure {
-        bail!("the path could not be followed to its end: {failure}; the frames printed are good");
+        bail!("the path could not be followed to its end: {failure}; the printed frames are valid");
     }
     Ok(())
 }
 
-/// Columns with their units, and rows. A twin that knows how sure it is has the bounds of the 90 % intervals after the readings, and whether the contact
-/// is unlike what taught.
+/// Columns with their units, and rows. If the twin has intervals, their bounds (90 %) and a flag of
+/// out-of-distribution contacts follow the readings.
 fn table(predicted: &Predicted) -> Vec<Vec<String>> {
     let columns = [
         "provenance",

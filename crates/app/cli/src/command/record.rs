@@ -1,4 +1,4 @@
-//! `twintac record`: presses on a bench, over its wires.
+//! `twintac record`: carries presses out on a bench, and records them.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,15 +24,15 @@ use crate::arguments::Record;
 use crate::output::print;
 use crate::progress::say;
 
-/// Set by Ctrl-C: the bench stops.
+/// Set by Ctrl-C. It stops the bench.
 static INTERRUPT: AtomicBool = AtomicBool::new(false);
 
-/// A run was stopped before its end, safely and for a reason; what was recorded is kept.
+/// A run was stopped before its end, safely and for a reason. What was recorded is kept.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub(crate) struct Stopped(String);
 
-/// The last line with `--json`.
+/// The last line of the output with `--json`.
 #[derive(Debug, Serialize)]
 struct Summary {
     rate_hz: f64,
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Record, program: &Program) -> Result<()> {
     let n_loads = planned.loads.len();
     if n_loads > 0 {
         say(&format!(
-            "{n_loads} loads of the protocol are left out: no robot puts weights on"
+            "{n_loads} loads of the protocol are left out: the robot cannot place weights"
         ));
     }
     let settings = press_settings(arguments.bench.as_deref())?;
@@ -90,7 +90,7 @@ fn start(arguments: &Record, sensor: SensorFile, source: &str, caller: Caller) -
     )?)
 }
 
-/// Says and draws what would be done.
+/// Prints and draws what would be done.
 fn dry_run(
     arguments: &Record,
     settings: &PressSettings,
@@ -115,7 +115,7 @@ fn dry_run(
     print(&format!("drawings {}", drawings.join(" ")))
 }
 
-/// Carries the presses out, and stops on Ctrl-C.
+/// Carries the presses out, and stops at Ctrl-C.
 fn press(
     arguments: &Record,
     (sensor, settings): (SensorFile, PressSettings),
@@ -125,17 +125,17 @@ fn press(
 ) -> Result<()> {
     let faults = arguments.faults.as_deref().map(read_faults).transpose()?;
     let whose = if reality.is_some() {
-        "the emulated"
+        "the emulated bench"
     } else {
         settings
             .real_devices()
             .map_err(|error| anyhow!("{error} with `--lab`"))?;
-        "a real"
+        "a real test setup"
     };
     let folder = out(arguments);
     check_logs(&folder, &sensor, reality, &settings)?;
     check_folder(&folder.join("logs"), plans)?;
-    let source = format!("{} presses on {whose} bench, over its wires", plans.len());
+    let source = format!("{} presses on {whose}, over its interfaces", plans.len());
     let caller = program.caller()?;
     let run = start(arguments, sensor, &source, caller.clone())?;
     let mut bench = match reality {
@@ -158,14 +158,14 @@ fn press(
     tell(&summary, plans.len(), &run, bench.provenance(), arguments.json)
 }
 
-/// Has a person mount an indenter. `answer` is where that person's answer comes, once asked.
+/// Asks a person to mount an indenter. `answer` receives the person's answer, once asked.
 fn mount(indenter: &str, answer: &mut Option<Receiver<bool>>, progress: &dyn Progress) -> Mounting {
     let asked = answer.get_or_insert_with(|| ask_for(indenter, progress));
     let mounting = match asked.try_recv() {
         Ok(true) => Mounting::Mounted,
         Err(TryRecvError::Empty) => return Mounting::Waiting,
         Ok(false) | Err(TryRecvError::Disconnected) => {
-            progress.note("nobody answers on standard input, so the indenter counts as not mounted");
+            progress.note("there is no answer on standard input, so the indenter counts as not mounted");
             Mounting::Refused
         }
     };
@@ -173,15 +173,16 @@ fn mount(indenter: &str, answer: &mut Option<Receiver<bool>>, progress: &dyn Pro
     mounting
 }
 
-/// Asks a person to mount an indenter; `true` comes with an answer, or `false` if nobody can answer any more.
+/// Asks a person to mount an indenter. The receiver gets `true` for an answer, and `false` if
+/// nobody can answer any more.
 fn ask_for(indenter: &str, progress: &dyn Progress) -> Receiver<bool> {
     progress.note(&format!(
-        "The robot is switched on and stands. Mount the indenter `{indenter}`, step back, and press Enter: it will move. Ctrl-C ends the run."
+        "The robot is enabled and does not move. Mount the indenter `{indenter}`, step back, and press Enter: the robot will move. Ctrl-C ends the run."
     ));
     let (sender, answer) = channel();
     std::thread::spawn(move || {
         let read = std::io::stdin().read_line(&mut String::new());
-        let _ = sender.send(matches!(read, Ok(bytes) if bytes > 0)); // nobody listens any more after Ctrl-C
+        let _ = sender.send(matches!(read, Ok(bytes) if bytes > 0)); // after Ctrl-C no receiver is left
     });
     answer
 }
@@ -201,7 +202,7 @@ fn tell(summary: &RunSummary, presses: usize, run: &Run, provenance: Provenance,
         })?)?;
     } else {
         print(&format!(
-            "{} of {presses} presses are done ({} data): {} frames at {:.1} Hz, {} lost without a mark",
+            "{} of {presses} presses are done ({} data): {} frames at {:.1} Hz, {} lost and not marked",
             summary.presses_done, provenance, summary.frames, summary.rate_hz, summary.lost_unmarked
         ))?;
         print(&format!("logs    {}", run.logs_folder().display()))?;
@@ -209,7 +210,7 @@ fn tell(summary: &RunSummary, presses: usize, run: &Run, provenance: Provenance,
     match stopped {
         None => Ok(()),
         Some(cause) => Err(Stopped(format!(
-            "the bench was stopped: {cause}. What was recorded is kept; the same command goes on with the next press"
+            "the test setup was stopped: {cause}. The recorded presses are kept; the same command continues with the next press"
         ))
         .into()),
     }

@@ -1,4 +1,4 @@
-//! `twintac reproduce`: recordings of a real sensor in, a judged twin out.
+//! `twintac reproduce`: from recordings of a real sensor to an evaluated twin.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::Program;
 use crate::arguments::{Import, Reproduce, Start};
 use crate::output::print;
 
-/// CSV files of a sensor, and how to read them.
+/// CSV files of a sensor, and their import description.
 struct Recorded<'a> {
     sensor: &'a Path,
     recordings: &'a [String],
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Reproduce, program: &Program) -> Result<()> {
     super::stages::finish(&run)
 }
 
-/// `twintac import`: starts a run with a lab's files, or guesses how to read one.
+/// `twintac import`: starts a run with files of a laboratory, or guesses an import description.
 pub(crate) fn import(arguments: &Import, program: &Program) -> Result<()> {
     if let Some(file) = &arguments.guess {
         return print(guess_import(file)?.trim_end());
@@ -49,7 +49,7 @@ pub(crate) fn import(arguments: &Import, program: &Program) -> Result<()> {
     start(&recorded, &arguments.start, arguments.out.as_deref(), program).map(drop)
 }
 
-/// The settings of a run, with what is known of temperature.
+/// The settings of a run, with the temperature coefficients.
 pub(super) fn settings(start: &Start) -> Result<RunSettings> {
     let mut settings = RunSettings::read(start.settings.as_deref())?;
     if let Some(file) = &start.temperature {

@@ -1,4 +1,4 @@
-//! `twintac simulate`: a protocol or a path on the simulated gel, or the places of a run.
+//! `twintac simulate`: a protocol or a path on the simulated gel, or the locations of a run.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::Program;
 use crate::arguments::Simulate;
 use crate::progress::Bars;
 
-/// Simulates and writes one table over depth for each press.
+/// Simulates, and writes one table over depth for each press.
 pub(crate) fn run(arguments: &Simulate, program: &Program) -> Result<()> {
     if let Some(folder) = &arguments.run {
         let run = Run::open(folder, program.caller()?)?;

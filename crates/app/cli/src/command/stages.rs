@@ -1,4 +1,4 @@
-//! The stages as commands of their own.
+//! The stages of a run as commands of their own.
 
 use anyhow::{Context, Result};
 use twintac_model::{UnseenEvaluation, evaluate_elsewhere, sensor_of_model};
@@ -10,13 +10,14 @@ use crate::arguments::{Align, Evaluate, Report, Train};
 use crate::output::{percent, print};
 use crate::progress::Bars;
 
-/// Everything after the recordings; prints the headline.
+/// Runs all stages after the recordings, and prints the headline figure.
 pub(crate) fn finish(run: &Run) -> Result<()> {
     let metrics = run.finish()?;
     print_headline(run, &metrics)
 }
 
-/// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
+/// `twintac align`: simulates the locations of a run's presses, fits the unknowns of the bench, and
+/// pairs frames.
 pub(crate) fn align(arguments: &Align, program: &Program) -> Result<()> {
     let run = Run::open(&arguments.run, program.caller()?)?;
     run.simulate()?;
@@ -28,7 +29,7 @@ pub(crate) fn train(arguments: &Train, program: &Program) -> Result<()> {
     Ok(Run::open(&arguments.run, program.caller()?)?.train()?)
 }
 
-/// `twintac evaluate`: a run's held-out presses, or a model on recordings from elsewhere.
+/// `twintac evaluate`: evaluates a run's twin on its test presses, or a model on other recordings.
 pub(crate) fn evaluate(arguments: &Evaluate, program: &Program) -> Result<()> {
     if let Some(folder) = &arguments.run {
         let run = Run::open(folder, program.caller()?)?;
@@ -74,10 +75,10 @@ fn headline(metrics: &Metrics) -> String {
     let polynomial = metrics.baselines.polynomial.iter();
     rows.extend(polynomial.map(|figures| ("static polynomial".to_owned(), figures)));
     let kernel = metrics.baselines.kernel.iter();
-    rows.extend(kernel.map(|figures| ("fitted curve".to_owned(), figures)));
+    rows.extend(kernel.map(|figures| ("parametric baseline".to_owned(), figures)));
     rows.push(("zero".to_owned(), &metrics.baselines.zero));
     let repeatability = metrics.repeatability.iter();
-    rows.extend(repeatability.map(|figures| ("the same press again".to_owned(), figures)));
+    rows.extend(repeatability.map(|figures| ("repeated press".to_owned(), figures)));
 
     let width = rows
         .iter()
@@ -86,7 +87,7 @@ fn headline(metrics: &Metrics) -> String {
         .unwrap_or(0);
     let mut lines = vec![
         format!(
-            "{} ({} data), {} presses that the twin never saw, `{}`",
+            "{} ({} data), {} held-out presses, `{}`",
             metrics.sensor, metrics.provenance, metrics.held_out_presses, metrics.variant
         ),
         format!("{:<width$}  {:>8}  {:>8}", "", "nearest", "all"),
@@ -101,7 +102,7 @@ fn headline(metrics: &Metrics) -> String {
     let beyond = metrics.twin.frames_not_simulated;
     if beyond > 0 {
         lines.push(format!(
-            "{:.1} % of the frames lie deeper than the simulation went; what it ends with stands for them, straight on.",
+            "{:.1} % of the frames are deeper than the simulation; the last simulated pressures are used for them.",
             100.0 * beyond as f64 / metrics.twin.frames.max(beyond) as f64
         ));
     }
@@ -122,7 +123,7 @@ fn unseen(found: &UnseenEvaluation) -> String {
             percent(figures.all_percent)
         ),
         format!(
-            "all as at training: nearest in contact {}",
+            "without recalibration: nearest in contact {}",
             percent(found.uncalibrated.nearest_in_contact_percent)
         ),
     ];
@@ -130,7 +131,7 @@ fn unseen(found: &UnseenEvaluation) -> String {
         let height = &contact.contact_offset_mm;
         let n_used = contact.used.len();
         lines.push(format!(
-            "{}: contact {:+.3} mm ± {:.3}, from its first {n_used} presses, which are not scored",
+            "{}: contact height {:+.3} mm ± {:.3}, from its first {n_used} presses, which are not scored",
             contact.file, height.value, height.uncertainty
         ));
         lines.extend(contact.doubts.iter().cloned());

@@ -1,4 +1,4 @@
-//! `twintac stream`: touch as it happens.
+//! `twintac stream`: shows or records a sensor's frames live.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,7 +13,7 @@ use crate::progress::say;
 pub(super) fn run(arguments: &Stream) -> Result<()> {
     if arguments.temperature.is_some() && arguments.format.is_none() && arguments.log.is_some() {
         bail!(
-            "--temperature is for rows and the dashboard: a log has what the sensor gave; leave it out, or add --format"
+            "--temperature is for rows and the dashboard: a log has the uncompensated readings; leave it out, or add --format"
         );
     }
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
             (stream_rows(source, about, format, limits, out, log.as_mut()), log)
         }
     };
-    // Whatever ended the stream, what was recorded is finished.
+    // The recording is finished, whatever ended the stream.
     let n_recorded = log.as_ref().map(TouchRecording::frames);
     if let Some(log) = log {
         let path = log.path().display().to_string();
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
     let n_lost = n_recorded.map_or(0, |n_recorded| streamed.rows.saturating_sub(n_recorded));
     if n_lost > 0 {
         say(&format!(
-            "{n_lost} frames are not in the log: the disk did not keep up"
+            "{n_lost} frames are not in the log: the disk was too slow"
         ));
     }
     sum_up(&streamed.tally);
@@ -61,14 +61,14 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
     Ok(())
 }
 
-/// What is written of a stream.
+/// Where the frames of a stream are written.
 enum Written {
     Log(TouchRecording),
     Rows(Format, Option<TouchRecording>),
 }
 
 impl Written {
-    /// What was asked for; none: the dashboard.
+    /// The requested outputs; `None` for the dashboard.
     fn of(arguments: &Stream, about: &About) -> Result<Option<Self>> {
         let log = arguments.log.as_deref();
         let log = log.map(|path| TouchRecording::create(path, about)).transpose()?;
@@ -90,21 +90,21 @@ impl Written {
     }
 }
 
-/// Set when the program is to end: a terminal stays as it was, and a log is finished.
+/// Set when the program has to end, so that the terminal is restored and the log is finished.
 fn ended() -> Result<&'static AtomicBool> {
     static ENDED: AtomicBool = AtomicBool::new(false);
     ctrlc::set_handler(|| ENDED.store(true, Ordering::Relaxed)).context("listening to signals")?;
     Ok(&ENDED)
 }
 
-/// Says what was lost, if anything was.
+/// Prints what was lost, if anything was.
 fn sum_up(tally: &Tally) {
     if tally.missed + tally.failed > 0 {
         let Tally {
             read, missed, failed, ..
         } = tally;
         say(&format!(
-            "{read} frames were read; {missed} of them missed; {failed} times none came"
+            "{read} frames were read, {missed} were missed, {failed} reads failed"
         ));
     }
     for remark in &tally.remarks {

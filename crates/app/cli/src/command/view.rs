@@ -1,4 +1,4 @@
-//! `twintac view`: the gel on a page, solved here.
+//! `twintac view`: serves the page of the gel, and solves it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,12 +15,12 @@ use crate::arguments::View as Arguments;
 use crate::output::print;
 use crate::progress::say;
 
-/// Where `cargo xtask web` writes the page.
+/// The file that `cargo xtask web` writes.
 const MADE: &str = "target/web/twintac.html";
 
 static ENDED: AtomicBool = AtomicBool::new(false);
 
-/// Longest wait for a frame before it is looked whether to go on.
+/// Longest wait for a frame before the end of the program is checked.
 const PATIENCE: Duration = Duration::from_millis(100);
 
 /// Serves the page until a signal.
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     if !arguments.listen.ip().is_loopback() {
         say(
-            "other machines can be let in, and what is sent is not encrypted: give the address to nobody you do not trust",
+            "other computers can connect, and the connection is not encrypted: give the address only to people whom you trust",
         );
     }
     say("open the address in a browser; Ctrl-C ends it");
@@ -72,7 +72,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     })
 }
 
-/// Hands frames over as they come, until the program or the sensor ends. The page goes on without a sensor that ended, and says why.
+/// Hands frames over as they come, until the program or the sensor ends. If the sensor ends, the
+/// page continues without it and says why.
 fn hand_over(mut live: Live, desk: &Desk) {
     while !ENDED.load(Ordering::Relaxed) {
         match live.source.next(PATIENCE) {
@@ -87,7 +88,7 @@ fn hand_over(mut live: Live, desk: &Desk) {
             }
             Ok(None) => {}
             Err(error) => {
-                let ended = format!("no more frames come: {error}");
+                let ended = format!("there are no more frames: {error}");
                 say(&ended);
                 desk.set_remarks(vec![ended]);
                 return;
@@ -96,19 +97,22 @@ fn hand_over(mut live: Live, desk: &Desk) {
     }
 }
 
-/// The page that was asked for, that of this program, or the one that was made in this folder.
+/// The requested page, that of this program, or the one that was made in this folder.
 fn page(asked: Option<&Path>) -> Result<Vec<u8>> {
     let path = match (asked, PAGE) {
         (Some(path), _) => path,
         (None, Some(page)) => return Ok(page.to_vec()),
         (None, None) if Path::new(MADE).exists() => Path::new(MADE),
         (None, None) => bail!(
-            "this program was built without the page, and {MADE} is not there: make it with `cargo xtask web`, or name one with --page"
+            "this program was built without the page, and {MADE} does not exist: make it with `cargo xtask web`, or name one with --page"
         ),
     };
     let page = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;
     if !page.trim_ascii_start().starts_with(b"<") {
-        bail!("{} is no HTML page: `cargo xtask web` makes one", path.display());
+        bail!(
+            "{} is not an HTML page: `cargo xtask web` makes one",
+            path.display()
+        );
     }
     Ok(page)
 }

@@ -9,13 +9,14 @@ use twintac_recording::{Control, Import, Press, Provenance, Recording};
 use twintac_simulate::Gel;
 use twintac_work::{At, WorkError, read_text};
 
-/// Recorded frames before and after the press are kept up to this far above the gel, mm.
+/// Frames of a recorded press count up to this height above the gel, mm.
 const ABOVE_MM: f64 = 0.25;
 
-/// Without a choice, taxels count whose largest reading of a press is above this part of the press's largest.
+/// If no taxels are named, a taxel counts if its largest reading is above this fraction of the
+/// press's largest.
 const LOUD: f64 = 0.3;
 
-/// Which curves to fit.
+/// The file that names the curves to fit.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CurvesFile {
@@ -37,33 +38,34 @@ struct CsvCurve {
     y_mm: f64,
 }
 
-/// A curve, and where it comes from.
+/// A curve and its provenance.
 pub type Measured = (Curve, Provenance);
 
-/// With what and where a curve was measured.
+/// The indenter and the location of a curve from a CSV file.
 #[derive(Clone, Debug)]
 pub struct CsvPlace {
     /// Name of the sensor's indenter.
     pub indenter: String,
-    /// Place of its origin, mm.
+    /// Location of its origin along x, mm.
     pub x_mm: f64,
-    /// Place of its origin, mm.
+    /// Location of its origin along y, mm.
     pub y_mm: f64,
 }
 
-/// Presses out of recordings.
+/// Presses from recordings.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Recorded {
-    /// `presses.parquet` of a run, or a CSV file of a lab.
+    /// `presses.parquet` of a run, or a CSV file of another laboratory.
     file: PathBuf,
-    /// How to read a CSV file; what the sensor names if absent.
+    /// The import description of a CSV file. If absent, the one that the sensor names.
     import: Option<PathBuf>,
     /// Names of presses; all if empty.
     #[serde(default)]
     presses: Vec<String>,
     signals: Signals,
-    /// Names of the taxels whose readings count; those near the press, and not doubtful, if empty.
+    /// Names of the taxels whose readings count. If empty: those near the press that the
+    /// description does not exclude (`doubtful`).
     #[serde(default)]
     taxels: Vec<String>,
 }
@@ -76,8 +78,9 @@ enum Signals {
     Both,
 }
 
-/// The curves that a TOML file names, in tables `[[curves]]` and `[[recordings]]`; paths in it are relative to it. `sensor_import` says how
-/// to read CSV recordings for which the file does not.
+/// The curves that a TOML file names, in tables `[[curves]]` and `[[recordings]]`. Paths in the
+/// file are relative to it. `sensor_import` is the import description for CSV recordings for which
+/// the file names none.
 ///
 /// # Errors
 /// A file that cannot be read or is wrong; one that names no curves.
@@ -109,10 +112,12 @@ pub fn curves_of_file(
     Ok(curves)
 }
 
-/// One curve from a CSV file with columns `time_s`, `depth_mm`, and `force_n` or `<taxel>_kpa`. It is taken to be measured on hardware.
+/// One curve from a CSV file with columns `time_s`, `depth_mm`, and `force_n` or `<taxel>_kpa`. Its
+/// provenance is `real`.
 ///
 /// # Errors
-/// A file that cannot be read, a missing column, a cell that is no finite number, an indenter that the sensor does not have.
+/// A file that cannot be read, a missing column, a cell that is no finite number, an indenter that
+/// the sensor does not have.
 pub fn curve_of_csv(path: &Path, place: &CsvPlace, gel: &Gel) -> Result<Measured, WorkError> {
     let unreadable = |source: csv::Error| WorkError::Csv {
         path: path.to_owned(),
@@ -160,7 +165,7 @@ pub fn curve_of_csv(path: &Path, place: &CsvPlace, gel: &Gel) -> Result<Measured
             .collect(),
     };
     for (row, record) in reader.records().enumerate() {
-        // The header is the first line.
+        // Line 1 is the header.
         let line = row + 2;
         let record = record.map_err(unreadable)?;
         let number = |column: usize| -> Result<f64, WorkError> {
@@ -183,7 +188,7 @@ pub fn curve_of_csv(path: &Path, place: &CsvPlace, gel: &Gel) -> Result<Measured
     Ok((curve, Provenance::Real))
 }
 
-/// A file that is not as it should be.
+/// The error of a file with wrong content.
 fn wrong(path: &Path, problem: &str) -> WorkError {
     WorkError::Input(format!("{}: {problem}", path.display()))
 }
@@ -246,7 +251,8 @@ fn of_recording(
 /// The forces of all presses of a recording.
 ///
 /// # Errors
-/// A press of prescribed force, or one that never comes near the gel; an indenter that the gel does not have.
+/// A press of prescribed force, or one that never comes near the gel; an indenter that the gel does
+/// not have.
 pub fn force_curves(recording: &Recording, gel: &Gel) -> Result<Vec<Measured>, WorkError> {
     let curve = |press: &Press| {
         let curve = of_press(press, Signals::Force, &[], gel).at(|| press.name.clone())?;
@@ -358,7 +364,7 @@ mod tests {
         let read = |recorded: &Recorded| of_recording(recorded, &file, Some(&import), &gel);
         let name = "gelD_test_20230706_164635#7";
         let curves = read(&recorded(&[name], Signals::Readings)).unwrap();
-        // At x = 6.03 mm, beside S2; 4 mm of travel of which 2.08 mm lead to the gel.
+        // At x = 6.03 mm, beside S2: 4 mm of travel, of which the first 2.08 mm lead to the gel.
         assert_eq!(curves.len(), 1);
         let (curve, provenance) = &curves[0];
         assert_eq!(*provenance, Provenance::Real);

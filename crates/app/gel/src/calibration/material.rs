@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 use twintac_calibrate::Fit;
 
-/// The file; `measured` says what it was fitted to.
+/// The file's text. `measured` names what the material was fitted to.
 pub(super) fn material_file(fit: &Fit, measured: &str) -> Result<String, toml::ser::Error> {
     let of_material = || {
         fit.unknowns
@@ -24,7 +24,7 @@ pub(super) fn material_file(fit: &Fit, measured: &str) -> Result<String, toml::s
         if unknown.identified {
             format!("{} {low:.4} to {high:.4}", unknown.name)
         } else {
-            format!("{} not told by the data", unknown.name)
+            format!("{} not determined by the data", unknown.name)
         }
     });
     let found: Vec<String> = found.collect();
@@ -41,7 +41,7 @@ pub(super) fn material_file(fit: &Fit, measured: &str) -> Result<String, toml::s
     toml::to_string(&file)
 }
 
-/// Leaves six significant digits of all numbers.
+/// Rounds all numbers to six significant digits.
 fn round(value: &mut Value) {
     match value {
         Value::Float(number) => *number = format!("{number:.5e}").parse().unwrap_or(*number),

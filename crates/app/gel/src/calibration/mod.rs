@@ -1,7 +1,8 @@
-//! Calibration: the gel's material from measured presses.
+//! Calibration: fits the gel's material to measured presses.
 //!
-//! [`curves_of_file`] and [`curve_of_csv`] read what was measured, [`calibrate`] fits, and [`Calibration::write`] leaves the material as a
-//! file that sensor descriptions can name, with a plot.
+//! [`curves_of_file`] and [`curve_of_csv`] read the measured curves, [`calibrate`] fits, and
+//! [`Calibration::write`] writes the material as a file that sensor descriptions can name, with a
+//! plot.
 
 mod curves;
 mod material;
@@ -21,34 +22,36 @@ use twintac_work::{Progress, Work, WorkError};
 pub use curves::force_curves;
 pub use curves::{CsvPlace, Measured, curve_of_csv, curves_of_file};
 
-/// Pixels of the PNG for each of the plot's.
+/// Pixels of the PNG for each unit of the plot.
 const PNG_SCALE: f64 = 2.0;
 
-/// A fit, with what it was made from: `calibration.json`.
+/// A fit, with its inputs: `calibration.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
     /// The sensor's name.
     pub sensor: String,
-    /// Of the curves, without repetition.
+    /// Provenance of the curves, without repetition.
     pub provenance: Vec<Provenance>,
-    /// What was free, by the names of [`Parameter`].
+    /// The free constants, by the names of [`Parameter`].
     pub free: Vec<String>,
-    /// How the gel was simulated.
+    /// Settings of the simulation.
     pub settings: SimulateSettings,
-    /// Frames that were simulated of each curve, about.
+    /// Approximate number of simulated frames of each curve.
     pub most_frames: usize,
-    /// What was found.
+    /// The fit.
     #[serde(flatten)]
     pub fit: Fit,
     #[serde(skip)]
     n_curves: usize,
 }
 
-/// Fits constants of a gel's material, and of the bench, to curves; they start from the material of the gel. `free` says which, by the names
-/// of [`Parameter`]; `fit_settings` say how many frames are simulated, and how long is sought.
+/// Fits constants of a gel's material, and unknowns of the bench, to curves. The fit starts from
+/// the material of the gel. `free` names the free constants, by the names of [`Parameter`].
+/// `fit_settings` say how many frames are simulated, and how many iterations are allowed.
 ///
 /// # Errors
-/// A name that is no constant of the material; curves that the gel cannot follow, or that are too few; fewer than two frames.
+/// A name that is no constant of the material; curves that the gel cannot follow; too few curves;
+/// fewer than two frames.
 pub fn calibrate(
     sensor: &SensorFile,
     settings: SimulateSettings,
@@ -94,7 +97,7 @@ impl Calibration {
     /// The material as a TOML file that sensor descriptions can name.
     ///
     /// # Errors
-    /// None that is known of: TOML may refuse what it cannot write.
+    /// None is known; the TOML library can refuse a value that it cannot write.
     pub fn material_toml(&self) -> Result<String, WorkError> {
         let plural = if self.n_curves == 1 { "" } else { "s" };
         let measured = format!("{} {} curve{plural}", self.n_curves, self.kinds());

@@ -1,13 +1,14 @@
-//! Measured and fitted curves, and what is left between them.
+//! The plot of measured and fitted curves, and of their residuals.
 
 use twintac_calibrate::{Fit, FittedSignal};
 use twintac_plot::{Ink, Panel, Panels, Scene, Series};
 use twintac_sensor::Sensor;
 
-/// Signals that get panels of their own; more would not be read.
+/// Most signals that get panels of their own; more would be illegible.
 const MOST_SHOWN: usize = 6;
 
-/// The plot of a fit to curves of some kinds of provenance: a panel of each signal, and one of its residuals below.
+/// The plot of a fit: a panel for each signal, and one for its residuals below. `kinds` is the
+/// provenance of the curves in words.
 pub(super) fn scene(fit: &Fit, sensor: &Sensor, kinds: &str) -> Scene {
     let rises = |signal: &FittedSignal| signal.depth_mm.windows(2).all(|pair| pair[1] > pair[0]);
     let over_depth = fit.material.prony.is_empty() && fit.signals.iter().all(rises);
@@ -48,7 +49,7 @@ pub(super) fn scene(fit: &Fit, sensor: &Sensor, kinds: &str) -> Scene {
             y_label: format!("residual ({unit})"),
             series: vec![
                 series("", Ink::Muted, 0.75, &|_| 0.0),
-                series("fitted less measured", Ink::Series(0), 1.0, &|row| {
+                series("fitted minus measured", Ink::Series(0), 1.0, &|row| {
                     signal.fitted[row] - signal.measured[row]
                 }),
             ],

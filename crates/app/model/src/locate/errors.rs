@@ -1,65 +1,69 @@
-//! How far off the places and depths are that were found, where the recording says what they were.
+//! Errors of estimated locations and depths, where the recording says the true ones.
 
 use serde::Serialize;
 
 use super::frames::{LocatedFrame, LocatedPress};
 
-/// A press is felt where its largest reading exceeds this part of the largest of all presses.
+/// A frame counts if its largest reading exceeds this fraction of the largest reading of all
+/// presses.
 const FELT: f64 = 0.03;
 
-/// How far off. Frames count in which the tip is in the gel and the largest reading exceeds 3 % of the largest of all presses of the recording.
-/// Depths are judged in % of the deepest of the same press.
+/// Errors of contact estimation. A frame counts if the tip is in the gel and its largest reading
+/// exceeds 3 % of the largest of all presses of the recording. Errors of depth are in % of the
+/// deepest of the same press.
 #[derive(Clone, Debug, Serialize)]
 pub struct LocationErrors {
-    /// Presses that are felt.
+    /// Number of presses with a frame that counts.
     pub presses: usize,
-    /// Presses that are not felt in any frame.
+    /// Number of presses without such a frame.
     pub presses_not_felt: usize,
-    /// Frames that count.
+    /// Number of frames that count.
     pub frames: usize,
-    /// Frames that count in which nothing was found.
+    /// Number of these frames in which no contact was found.
     pub frames_missed: usize,
-    /// Distance of the place, mm, in the frames.
+    /// Error of the location, mm, over the frames.
     pub place_mm: Quantiles,
-    /// The same in the deepest frame of each press, the last of those that are alike.
+    /// The same in the deepest frame of each press, the last of equal ones.
     pub place_at_peak_mm: Quantiles,
-    /// Error of the depth, % of the press's largest, in the frames.
+    /// Error of the depth, % of the press's largest, over the frames.
     pub depth_percent: Quantiles,
     /// The same in the deepest frame of each press.
     pub depth_at_peak_percent: Quantiles,
-    /// Places in frames that lie within two stated deviations, along each axis that is looked for, %; `None` if nothing was found.
+    /// Percentage of the frames whose location error is within two stated standard deviations along
+    /// each estimated axis; `None` if no contact was found.
     pub place_within_two_deviations_percent: Option<f64>,
-    /// Depths in frames that lie within two stated deviations, %.
+    /// Percentage of the frames whose depth error is within two stated standard deviations.
     pub depth_within_two_deviations_percent: Option<f64>,
-    /// The presses that are felt.
+    /// The presses with frames that count.
     pub of_presses: Vec<PressErrors>,
 }
 
-/// How far off a press is.
+/// Errors of one press.
 #[derive(Clone, Debug, Serialize)]
 pub struct PressErrors {
     /// The press's name.
     pub name: String,
-    /// Place along x and y, mm.
+    /// True location along x and y, mm.
     pub place_mm: [f64; 2],
-    /// Largest depth, mm.
+    /// Largest true depth, mm.
     pub deepest_mm: f64,
     /// Largest reading of its frames that count, kPa.
     pub largest_kpa: f64,
-    /// Median distance of the place, mm; `None` if nothing was found.
+    /// Median error of the location, mm; `None` if no contact was found.
     pub place_error_mm: Option<f64>,
     /// Median error of the depth, % of the deepest.
     pub depth_error_percent: Option<f64>,
-    /// Error of the place along x and of the depth in the deepest frame, mm; found less true. `None` if nothing was found.
+    /// Errors of the location along x and of the depth in the deepest frame, mm, estimated minus
+    /// true. `None` if no contact was found.
     pub at_peak_mm: Option<[f64; 2]>,
 }
 
-/// The middle of errors, and what 90 of 100 do not exceed; `None` of no errors.
+/// Median and 90th percentile of errors; `None` without errors.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Quantiles {
     /// Median.
     pub median: Option<f64>,
-    /// What 90 of 100 do not exceed.
+    /// 90th percentile.
     pub of_90_percent: Option<f64>,
 }
 
@@ -91,7 +95,7 @@ impl FrameError {
         let (place_mm, deviation_mm) = (frame.place_mm?, frame.place_deviation_mm?);
         let way_mm = [0, 1].map(|axis| place_mm[axis] - frame.true_place_mm[axis]);
         let depth_mm = frame.depth_mm? - frame.true_depth_mm?;
-        // What is not looked for has no deviation.
+        // An axis that is not estimated has no deviation.
         let is_within =
             |axis: usize| deviation_mm[axis] == 0.0 || way_mm[axis].abs() <= 2.0 * deviation_mm[axis];
         Some(Self {
@@ -105,7 +109,7 @@ impl FrameError {
 }
 
 impl LocationErrors {
-    /// Of the presses that have taught or have not.
+    /// The errors on presses that the twin was trained on (`taught`), or on the others.
     pub(super) fn of(presses: &[LocatedPress], taught: bool) -> Option<Self> {
         let frames = presses.iter().flat_map(|press| &press.frames);
         let largest_kpa = frames.map(|frame| frame.largest_kpa).fold(0.0, f64::max);
@@ -171,7 +175,7 @@ impl LocationErrors {
 mod tests {
     use super::*;
 
-    /// A frame at x = 3, found so far off along x and in depth.
+    /// A frame at x = 3 mm, with these errors along x and in depth.
     fn frame(true_depth_mm: f64, largest_kpa: f64, off_mm: Option<[f64; 2]>) -> LocatedFrame {
         LocatedFrame {
             time_s: 0.0,
@@ -222,7 +226,7 @@ mod tests {
         let taught = LocationErrors::of(&presses, true).unwrap();
         assert!(taught.place_mm.median.unwrap().abs() < 1e-12);
         assert!(LocationErrors::of(&presses[..1], true).is_none());
-        // Felt in the gel, and nothing found: errors over nothing are none.
+        // A frame that counts without a contact found: there are no errors.
         let missed = [press(false, vec![frame(1.0, 50.0, None)])];
         let errors = LocationErrors::of(&missed, false).unwrap();
         assert_eq!([errors.frames, errors.frames_missed], [1, 1]);

@@ -1,7 +1,8 @@
-//! From what a sensor reads to where and how deep it is touched, by its trained twin.
+//! Contact estimation with a trained twin: from readings to location, depth and indenter.
 //!
-//! The twin's memory is taken off the readings, frame by frame; what is left depends on the press of the moment alone. It is compared with what the
-//! twin reads at places and depths all over the gel.
+//! The twin's viscoelastic part is removed from the readings, frame by frame; what remains depends
+//! on the present press alone. It is compared with the twin's elastic readings at locations and
+//! depths all over the gel.
 
 mod errors;
 mod frames;
@@ -30,49 +31,51 @@ use crate::unseen::refuse_other_sensor;
 pub use errors::LocationErrors;
 pub use frames::{LocatedFrame, LocatedPress};
 
-/// Time within which the zero follows a sensor that nothing touches, s.
+/// Time constant with which the zero follows a sensor that nothing touches, s.
 const ZERO_S: f64 = 1.0;
 
-/// A trained twin, turned around: from readings to what touches.
+/// Estimates contacts from readings, by a trained twin.
 ///
-/// Known are the indenters of the sensor's description, the radius of a tip that was fitted, the contact heights of the mountings that the twin was trained
-/// with, and that the gel is touched at one place at a time. Taxels that the description calls doubtful are not read.
+/// Given are the indenters of the sensor's description, the fitted radius of a tip, and the contact
+/// heights of the mountings that the twin was trained on. The gel is touched at one location at a
+/// time. Taxels that the description excludes (`doubtful`) are not used.
 pub struct Locator {
     model: Model,
     gel: Gel,
     indenters: Vec<String>,
-    /// Taxels that are read, by index.
+    /// Indices of the taxels that are used.
     taxels: Vec<usize>,
     inverse: Inverse<TableModel>,
 }
 
-/// What touches, frame by frame, and how far off that is.
+/// Estimated contacts, frame by frame, and their errors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Located {
-    /// Where the readings come from.
+    /// Provenance of the readings.
     pub provenance: Provenance,
     /// The sensor's name.
     pub sensor: String,
-    /// Which model the twin is.
+    /// The variant of the twin.
     pub variant: Variant,
-    /// What the inverse assumed.
+    /// Settings of the estimator.
     pub settings: InverseSettings,
-    /// Errors on presses that the twin was not trained with; none if all have taught.
+    /// Errors on presses that the twin was not trained on; `None` without such presses.
     pub unseen: Option<LocationErrors>,
-    /// Errors on the presses that taught the twin.
+    /// Errors on presses that the twin was trained on.
     pub taught: Option<LocationErrors>,
     /// The presses in order.
     pub presses: Vec<LocatedPress>,
-    /// Time that a frame took, ms, on one core; it is not reproducible.
+    /// Mean time of a frame, ms, on one core. It is not reproducible.
     #[serde(skip)]
     pub frame_ms: f64,
 }
 
 impl Locator {
-    /// What the inverse of a trained twin assumes, but for what a file (TOML) says otherwise, if there is one.
+    /// The default settings of the estimator, with the values of a file (TOML) in place of its own,
+    /// if there is a file.
     ///
     /// # Errors
-    /// A file that cannot be read, a field that there is not, a value that makes no sense.
+    /// A file that cannot be read, an unknown field, a value that is not allowed.
     pub fn settings(path: Option<&Path>) -> Result<InverseSettings, WorkError> {
         let settings = InverseSettings {
             noise_kpa: 0.03,
@@ -86,12 +89,13 @@ impl Locator {
         })
     }
 
-    /// Opens a model's folder and prepares what the twin reads of each of the named indenters, or of all that the sensor's description has, at places
-    /// within one and a half gel heights of the taxels, and down to `deepest_mm`. Indenters are turned as described.
+    /// Opens a model's folder, and computes the twin's readings for each of the named indenters, or
+    /// for all of the sensor's description, at locations within one and a half gel heights of the
+    /// taxels, and down to `deepest_mm`. Indenters have their described orientation.
     ///
     /// # Errors
-    /// A folder that holds no twin, or a damaged one; an indenter that the sensor does not have; a place that cannot be pressed; settings that
-    /// cannot be.
+    /// A folder that holds no twin, or a damaged one; an indenter that the sensor does not have; a
+    /// location that cannot be pressed; settings that are not allowed.
     pub fn open(
         model_folder: &Path,
         indenters: &[String],
@@ -127,8 +131,9 @@ impl Locator {
         })
     }
 
-    /// Follows the frames of a recording as they came. Presses of one mounting follow each other: the gel remembers. A press begins
-    /// untouched. For a reading that is not usable, the taxel's last usable one stands.
+    /// Estimates the contacts of a recording, frame by frame in their order. Presses of one
+    /// mounting follow each other, because the gel remembers. A press begins untouched. An unusable
+    /// reading is replaced by the taxel's last usable one.
     ///
     /// # Errors
     /// Recordings of another sensor; poses beside the gel.
@@ -177,7 +182,7 @@ impl Locator {
         })
     }
 
-    /// Names of the indenters that it tells apart: the numbers of a contact's shape count these.
+    /// Names of the indenters that it distinguishes. The shape of a contact is an index into them.
     #[must_use]
     pub fn indenters(&self) -> &[String] {
         &self.indenters
@@ -189,7 +194,7 @@ impl Locator {
         &self.model.record.taxels
     }
 
-    /// Follows a sensor that nothing touches yet, as its frames come.
+    /// Starts the estimation of a sensor that nothing touches yet, frame by frame.
     #[must_use]
     pub fn start(&self) -> LocatorTracker {
         LocatorTracker {
@@ -232,7 +237,7 @@ impl Locator {
     }
 }
 
-/// Follows the contact of one sensor by its trained twin, frame by frame.
+/// Estimates the contact of one sensor by its trained twin, frame by frame.
 #[derive(Clone, Debug)]
 pub struct LocatorTracker {
     sensor: WithoutMemory,
@@ -240,17 +245,19 @@ pub struct LocatorTracker {
     before_s: Option<f64>,
     usable_kpa: Vec<f64>,
     readings_kpa: Vec<f64>,
-    /// Taxels that are read, by index, and what they read.
+    /// Indices of the taxels that are used, and their readings.
     taxels: Vec<usize>,
     read_kpa: Vec<f64>,
 }
 
 impl LocatorTracker {
-    /// Takes a frame, `since_s` after the one before: readings above the untouched sensor, kPa, and whether each is usable; `[n_taxels]` both. For one that is not,
-    /// the taxel's last usable one stands. Returns what touches, or nothing if the readings are within noise.
+    /// Takes a frame, `since_s` after the one before: readings above the untouched sensor, kPa, and
+    /// whether each is usable; `[n_taxels]` both. An unusable reading is replaced by the taxel's
+    /// last usable one. Returns the contact, or `None` if the readings are within noise.
     ///
     /// # Errors
-    /// Another number of readings; a time that is not finite or negative. All is then as before the frame.
+    /// Another number of readings; a time that is not finite or negative. The state is then
+    /// unchanged.
     pub fn update(
         &mut self,
         since_s: f64,
@@ -285,9 +292,9 @@ impl LocatorTracker {
     }
 }
 
-/// Where the indenter of a press truly is.
+/// The true position of the indenter of a press.
 struct Truth {
-    /// Height of its first touch and of the zero of depths, mm.
+    /// Height of first contact, where depths count from, mm.
     zero_z_mm: Option<f64>,
 }
 
@@ -312,7 +319,7 @@ impl Truth {
     }
 }
 
-/// Whether a press goes on with the clock and the gel of the one before.
+/// Whether a press continues the clock and the gel's history of the one before.
 fn follows(before: &Press, press: &Press) -> bool {
     let ended_s = before.time_s.last();
     let started_s = press.time_s.first();

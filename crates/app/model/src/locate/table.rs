@@ -1,4 +1,4 @@
-//! What a twin without memory reads at places and depths all over its gel.
+//! The twin's elastic readings at locations and depths all over its gel.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +12,19 @@ use twintac_simulate::Gel;
 use twintac_tables::DepthTableStore;
 use twintac_work::{Progress, Work, WorkError};
 
-/// How far from the taxels a press is thought of, and how near to the gel's edges, over the gel's height.
+/// Largest distance of a location from the taxels, and smallest distance from the gel's edges, in
+/// gel heights.
 const FARTHEST: f64 = 1.5;
 const NEAREST: f64 = 0.5;
 
-/// Spacing of the solved places over the gel's height, along a line and over a plane.
+/// Spacing of the solved locations in gel heights, along a line and over a plane.
 const SPACINGS: [f64; 2] = [1.0 / 4.0, 1.0 / 3.0];
 
-/// Spacing of the table's places and depths, mm.
+/// Spacing of the table's locations and depths, mm.
 const PLACE_STEP_MM: f64 = 0.5;
 const DEPTH_STEP_MM: f64 = 0.05;
 
-/// A table for each of the named indenters, of the taxels that are read.
+/// A table for each of the named indenters, of the taxels that are used.
 pub(super) fn tables(
     model: &Model,
     gel: &Gel,
@@ -46,7 +47,8 @@ pub(super) fn tables(
         .collect()
 }
 
-/// Corners of the rectangle of places that are thought of, mm: along a line of taxels it is a line.
+/// Corners of the rectangle of possible locations, mm. For taxels in one row the rectangle is a
+/// line.
 fn places(gel: &Gel, taxels: &[usize]) -> [DVec2; 2] {
     let sensor = gel.sensor();
     let (bottom, top) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
@@ -93,7 +95,8 @@ fn solve(
     Ok(store.depth_tables(&requests?)?)
 }
 
-/// The twin's readings at each place, without memory, down to where the tables of all places reach.
+/// The twin's elastic readings at each location, down to the depth that the tables of all locations
+/// reach.
 fn readings(
     model: &Model,
     at: &(dyn Fn(DVec2) -> DepthTable + Sync),
@@ -106,7 +109,7 @@ fn readings(
     let places: Vec<DVec2> = (0..n_y)
         .flat_map(|j| (0..n_x).map(move |i| low + step_mm * DVec2::new(i as f64, j as f64)))
         .collect();
-    // Depths are counted from first touch, whatever the mounting.
+    // Depths count from first contact, whatever the mounting.
     let bench = BenchEstimate {
         contact_offset_mm: BTreeMap::new(),
         contact_offset_elsewhere_mm: 0.0,
@@ -132,7 +135,7 @@ fn readings(
             force_n[node] = bench.stiffness() * twin.force_n();
         }
     }
-    // An axis of one node is not looked for; its step is not used.
+    // An axis with one node is not estimated; its step is not used.
     let along = |step: f64| if step > 0.0 { step } else { 1.0 };
     Ok(ReadingTable {
         first_mm: [low.x, low.y, 0.0],

@@ -1,4 +1,4 @@
-//! Stage `evaluation`: the twin on presses that it never saw.
+//! Stage `evaluation`: the twin on presses on which it was not trained.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,12 +16,12 @@ use super::training::{HELD_OUT, VariantRecord};
 use crate::metrics::Metrics;
 use crate::{Run, RunSettings};
 
-/// What the evaluation stage left: `evaluation.json`.
+/// The result of the evaluation stage: `evaluation.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct HeldOut {
-    /// The twin on presses that it never saw.
+    /// The twin's errors on the test presses.
     pub(crate) evaluation: Evaluation,
-    /// How well the presses themselves repeat.
+    /// Repeatability of the presses themselves.
     pub(crate) repeatability: Option<Repeatability>,
 }
 
@@ -96,7 +96,8 @@ impl Stage for Evaluating<'_> {
 }
 
 impl Run {
-    /// Judges the twin that was trained without the test presses on these, and says how well it did.
+    /// Evaluates the twin that was trained without the test presses on these, and returns its
+    /// errors.
     ///
     /// # Errors
     /// No twin is trained yet.
@@ -117,15 +118,15 @@ impl Run {
         })
     }
 
-    /// The evaluation, as it would be made now.
+    /// The evaluation stage, if it matches its present inputs.
     pub(crate) fn evaluation(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.evaluating()?)?)
     }
 
-    /// The figures of the run: what `metrics.json` holds.
+    /// The figures of the run: the content of `metrics.json`.
     ///
     /// # Errors
-    /// The run is not evaluated yet, or not as it is now.
+    /// The run is not evaluated yet, or its evaluation does not match its present inputs.
     pub fn metrics(&self) -> Result<Metrics, WorkError> {
         Ok(read_json(&self.evaluation()?.file("metrics.json"))?)
     }

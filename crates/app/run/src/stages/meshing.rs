@@ -1,4 +1,4 @@
-//! Stage `mesh`: the gel as it stands, for people to look at.
+//! Stage `mesh`: the gel at rest, for people to look at.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ impl Stage for Meshing<'_> {
 }
 
 impl Run {
-    /// Meshes the gel as it stands; presses refine it where they touch.
+    /// Meshes the gel at rest. Presses have meshes of their own, which are fine where they touch.
     ///
     /// # Errors
     /// A gel that cannot be meshed; a folder that cannot be written.

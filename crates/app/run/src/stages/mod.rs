@@ -1,4 +1,4 @@
-//! The stages of a run, a file each. What a stage depends on are the fields of its struct.
+//! The stages of a run, one file each. The fields of a stage's struct are its inputs.
 
 pub(crate) mod evaluation;
 mod meshing;

@@ -40,7 +40,7 @@ impl Stage for Pairing<'_> {
     }
 }
 
-/// The paired presses that the stage left.
+/// The paired presses of the stage.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -52,7 +52,7 @@ impl Run {
     /// Aligns every press with its simulation, and pairs their frames.
     ///
     /// # Errors
-    /// The recordings or their simulations are not there yet.
+    /// The recordings or their simulations do not exist yet.
     pub fn pair(&self) -> Result<(), WorkError> {
         self.run_stage(&self.pairing()?).map(drop)
     }
@@ -65,10 +65,10 @@ impl Run {
         })
     }
 
-    /// The stage of paired presses, as it would be made now.
+    /// The stage of paired presses, if it matches its present inputs.
     ///
     /// # Errors
-    /// It is not there, or is not as it would be made now.
+    /// It does not exist, or does not match its present inputs.
     pub fn pairs(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.pairing()?)?)
     }

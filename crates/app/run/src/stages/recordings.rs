@@ -1,4 +1,5 @@
-//! Stage `recordings`: presses from a lab's files, from logs of a bench, or from the emulated bench at once.
+//! Stage `recordings`: presses from files of a laboratory, from logs of a bench, or computed for
+//! the emulated bench.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,13 +17,13 @@ use twintac_work::{At, Planned, Progress, Work, WorkError, read_text};
 
 use crate::Run;
 
-/// What the stage is called, and how people make it.
+/// The name of the stage, and the commands that make it.
 const RECORDINGS: (&str, &str) = ("recordings", "twintac import` or `twintac record");
 
-/// The file of the presses.
+/// Name of the file of presses.
 const PRESSES: &str = "presses.parquet";
 
-/// The presses that the stage left.
+/// The presses of the stage.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -30,7 +31,8 @@ pub fn read_recording(stage: &Finished) -> Result<Recording, WorkError> {
     Ok(Recording::read_parquet(&stage.file(PRESSES))?)
 }
 
-/// A file that is read. Its name is that of a mounting. Where it lies does not count: the digest tells what is in it.
+/// An input file. Its name is that of a mounting (one installation of sensor and indenter). Its
+/// content is identified by the digest; its path does not count.
 #[derive(Serialize)]
 struct LabFile<'a> {
     name: String,
@@ -66,14 +68,14 @@ impl Stage for Importing<'_> {
     }
 }
 
-/// Says what was found in files of which something was left out.
+/// Reports files of which something was left out.
 fn tell(summary: &ImportSummary, progress: &dyn Progress) {
     for file in summary.files.iter().filter(|file| file.is_notable()) {
         file.to_string().lines().for_each(|line| progress.note(line));
     }
 }
 
-/// Takes off what temperature did to the zeros, where it is known how they move with it, and says so.
+/// Removes the drift of zeros with temperature, if coefficients are known, and reports it.
 fn compensate(
     recording: &mut Recording,
     temperature: Option<&Compensation>,
@@ -85,7 +87,7 @@ fn compensate(
     Ok(())
 }
 
-/// Presses and weights on the emulated bench at once.
+/// Presses and weights, computed for the emulated bench without its devices.
 #[derive(Serialize)]
 struct Emulating<'a> {
     sensor: &'a Keyed<SensorFile>,
@@ -121,7 +123,7 @@ impl Stage for Emulating<'_> {
     }
 }
 
-/// The laboratory follows from the sensor and the reality.
+/// The emulated bench follows from the sensor and the emulator configuration.
 fn keyed_lab(sensor: &Keyed<SensorFile>, reality: &Reality) -> Result<Keyed<Lab>, WorkError> {
     let lab = Lab::new(Arc::clone(&sensor.sensor), reality.clone())?;
     Ok(Keyed::from_inputs(lab, &(sensor, reality))?)
@@ -165,7 +167,7 @@ impl Recipe for EmulatedLoad<'_> {
     }
 }
 
-/// What the emulated gel answers at the places of planned presses.
+/// The response of the emulated gel at the locations of planned presses.
 #[derive(Serialize)]
 struct LiveTables<'a> {
     sensor: &'a Keyed<SensorFile>,
@@ -173,7 +175,7 @@ struct LiveTables<'a> {
     plans: &'a [PressPlan],
 }
 
-/// The tables that the stage left, in the order of the plans.
+/// Name of the file of tables, in the order of the plans.
 const TABLES: &str = "tables.json";
 
 impl Stage for LiveTables<'_> {
@@ -232,7 +234,8 @@ impl Stage for Collecting<'_> {
         for LabFile { path, name, .. } in &self.logs {
             let mut read = twintac_log::read_presses(path, &ReadOptions::default())?;
             for press in &mut read.recording.presses {
-                // Every press has a log of its own; what they share is how the indenter was mounted.
+                // Every press has a log of its own. Presses with the same indenter share its
+                // mounting.
                 press.mounting.clone_from(&press.indenter);
             }
             remarks.extend(read.remarks.into_iter().map(|remark| (name.clone(), remark)));
@@ -252,13 +255,13 @@ impl Stage for Collecting<'_> {
     }
 }
 
-/// How the recordings of another run are changed. Its fields are all that the change depends on.
+/// A change of the recordings of another run. Its fields are all the inputs of the change.
 pub trait Change: Serialize {
     /// The recordings, changed.
     fn changed(&self, recording: Recording) -> Recording;
 }
 
-/// The recordings of another run, changed.
+/// The changed recordings of another run.
 #[derive(Serialize)]
 struct Taking<'a, C> {
     sensor: &'a Keyed<SensorFile>,
@@ -279,7 +282,7 @@ impl<C: Change> Stage for Taking<'_, C> {
 }
 
 impl Run {
-    /// The presses, as recorded.
+    /// The presses as recorded.
     ///
     /// # Errors
     /// There are none yet, they are of another sensor than the run, or they cannot be read.
@@ -287,8 +290,8 @@ impl Run {
         read_recording(&self.recordings()?)
     }
 
-    /// Makes the run's recordings of files of any laboratory, which the description `import` says how to read. All of them must belong to
-    /// the run's sensor.
+    /// Makes the run's recordings from files of any laboratory, which the import description
+    /// `import` says how to read. All of them must belong to the run's sensor.
     ///
     /// # Errors
     /// A file that cannot be read as described, or that is of another sensor.
@@ -303,8 +306,8 @@ impl Run {
         .map(drop)
     }
 
-    /// Computes what the emulated bench would record of planned presses and weights, without devices and without waiting. Each is kept as
-    /// soon as it is done.
+    /// Computes what the emulated bench would record of planned presses and weights, without
+    /// devices and without waiting. Each result is kept as soon as it is done.
     ///
     /// # Errors
     /// A press that the gel cannot carry out.
@@ -318,7 +321,7 @@ impl Run {
         .map(drop)
     }
 
-    /// Takes the recordings of another run, changed.
+    /// Makes the run's recordings from those of another run, with a change.
     ///
     /// # Errors
     /// The other run has no recordings; a file that cannot be written.
@@ -331,7 +334,8 @@ impl Run {
         .map(drop)
     }
 
-    /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
+    /// The response of the emulated gel at the locations of the plans. Each is kept as soon as it
+    /// is computed.
     pub(crate) fn live_tables(
         &self,
         reality: &Reality,
@@ -345,7 +349,7 @@ impl Run {
         Ok(read_json(&finished.file(TABLES))?)
     }
 
-    /// Makes the run's recordings of the logs of its presses, as far as they are done.
+    /// Makes the run's recordings from the logs of those presses that are done.
     ///
     /// # Errors
     /// Logs that cannot be read or are of another sensor; none at all.
@@ -360,10 +364,10 @@ impl Run {
         .map(drop)
     }
 
-    /// The recordings, of the sensor as it is described now.
+    /// The stage of recordings, of the sensor as it is described now.
     ///
     /// # Errors
-    /// They are not there, or are of another sensor.
+    /// It does not exist, or is of another sensor.
     pub fn recordings(&self) -> Result<Finished, WorkError> {
         let (name, made_by) = RECORDINGS;
         let finished = self.stages().finished(name, made_by).map_err(StoreError::from)?;
@@ -410,7 +414,7 @@ fn check_sensor(sensor: &Sensor, recording: &Recording) -> Result<(), WorkError>
     Ok(())
 }
 
-/// All values, made over all cores.
+/// The values of all recipes, made in parallel.
 fn all<R>(
     progress: &dyn Progress,
     work: &str,
@@ -436,7 +440,7 @@ where
         .collect()
 }
 
-/// Reads files of a laboratory as the description `import` says.
+/// Reads files of a laboratory according to the import description `import`.
 ///
 /// # Errors
 /// A file that cannot be read as described.
@@ -444,7 +448,7 @@ pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, Impo
     Ok(read_import(import)?.read_all(files)?)
 }
 
-/// Reads a description of columns, of CSV files or of bags of ROS 2.
+/// Reads an import description, of CSV files or of bags of ROS 2.
 ///
 /// # Errors
 /// A file that cannot be read, or is wrong.
@@ -458,7 +462,8 @@ fn read_import_text(import: &Path) -> Result<(Import, String), WorkError> {
     Ok((description.with_bags(read_bag), text))
 }
 
-/// The text of a first import description of a CSV file or a bag of ROS 2, to be checked. What is not in the file is marked with TODO.
+/// Guesses a first import description of a CSV file or a bag of ROS 2, as text to be checked. What
+/// the file does not contain is marked with TODO.
 ///
 /// # Errors
 /// A file that cannot be read, or in which nothing looks like readings.
@@ -476,7 +481,7 @@ pub fn read_recordings(files: &[PathBuf]) -> Result<Recording, WorkError> {
     for file in files {
         if file.extension().is_none_or(|extension| extension != "parquet") {
             return Err(WorkError::Input(format!(
-                "{} is no Parquet file; say with --import how to read it",
+                "{} is not a Parquet file; give --import to read it",
                 file.display()
             )));
         }

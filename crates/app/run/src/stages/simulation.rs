@@ -1,4 +1,4 @@
-//! Stage `simulation`: the bench's unknowns, and a table over depth for each place.
+//! Stage `simulation`: the unknowns of the bench, and a table over depth for each location.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::run::gel_of;
 use crate::settings::ResolvedSettings;
 use crate::{Run, RunSettings};
 
-/// What stages after the recordings depend on.
+/// The common inputs of all stages after the recordings.
 #[derive(Clone, Copy, Serialize)]
 pub(crate) struct Setup<'a> {
     pub(crate) sensor: &'a Keyed<SensorFile>,
@@ -28,7 +28,7 @@ pub(crate) struct Setup<'a> {
 }
 
 impl Setup<'_> {
-    /// The settings for the sensor, its presses and the seed: what stages compute from.
+    /// The settings from which stages compute: resolved for the sensor, its presses and the seed.
     pub(crate) fn resolved(&self, recording: &Recording) -> Result<ResolvedSettings, WorkError> {
         let sensor = &self.sensor.sensor;
         let is_fast = self.fast.is_some();
@@ -74,20 +74,20 @@ impl Stage for Simulating<'_> {
     }
 }
 
-/// What the simulation stage left.
+/// The result of the simulation stage.
 pub struct Simulation {
-    /// Which presses teach, decide and judge.
+    /// Division into training, validation and test presses.
     pub split: Split,
-    /// What was fitted about the bench.
+    /// The fitted unknowns of the bench.
     pub bench: BenchEstimate,
-    /// The distinct places.
+    /// The distinct locations.
     pub places: Places,
-    /// A table over depth for each place.
+    /// A table over depth for each location.
     pub tables: Vec<DepthTable>,
 }
 
 impl Simulation {
-    /// Reads it.
+    /// Reads the result of the stage.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -101,7 +101,7 @@ impl Simulation {
     }
 }
 
-/// Where and with what the places are touched; `[n_places]`.
+/// The contact of each location: where and with what it is pressed; `[n_places]`.
 pub(crate) fn contacts(
     places: &Places,
     sensor: &SensorFile,
@@ -111,10 +111,11 @@ pub(crate) fn contacts(
 }
 
 impl Run {
-    /// Fits what is unknown about the bench to training presses, and simulates the gel at every place that was pressed.
+    /// Fits the unknowns of the bench to training and validation presses, and simulates the gel at
+    /// every location that was pressed.
     ///
     /// # Errors
-    /// There are no recordings yet; a place that cannot be pressed.
+    /// There are no recordings yet; a location that cannot be pressed.
     pub fn simulate(&self) -> Result<(), WorkError> {
         self.run_stage(&self.simulating()?).map(drop)
     }
@@ -138,10 +139,10 @@ impl Run {
         })
     }
 
-    /// The simulation stage, as it would be made now.
+    /// The simulation stage, if it matches its present inputs.
     ///
     /// # Errors
-    /// It is not there, or is not as it would be made now.
+    /// It does not exist, or does not match its present inputs.
     pub fn simulation(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.simulating()?)?)
     }

@@ -1,4 +1,5 @@
-//! Stage `training`: every variant of the twin, the one that validation presses choose, and that one again on all presses.
+//! Stage `training`: every variant of the twin, the one that validation presses choose, and that
+//! one again with the test presses.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -19,28 +20,28 @@ use super::simulation::{Setup, Simulation, contacts};
 use crate::Run;
 use crate::settings::ResolvedSettings;
 
-/// How each variant did: `variants.json`.
+/// The errors and losses of a variant: `variants.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct VariantRecord {
-    /// Which.
+    /// The variant.
     pub(crate) variant: Variant,
     /// Whether it was chosen.
     pub(crate) chosen: bool,
-    /// Its errors on validation presses, by which the choice was made.
+    /// Its errors on validation presses. The choice is made by them.
     pub(crate) validation: Score,
-    /// Its errors on test presses, which nothing was chosen by.
+    /// Its errors on test presses, which no choice uses.
     pub(crate) test: Score,
     /// Its losses.
     pub(crate) history: Vec<Epoch>,
 }
 
-/// The twin that never saw the test presses, in the stage's folder.
+/// Folder in the stage: the twin that was trained without the test presses.
 pub(crate) const HELD_OUT: &str = "held-out";
 
-/// The twin of all presses, in the stage's folder.
+/// Folder in the stage: the twin that was trained on all presses.
 pub const COMPLETE: &str = "complete";
 
-/// What twins are trained with.
+/// The inputs of training.
 #[derive(Clone, Serialize)]
 struct Teaching<'a> {
     #[serde(flatten)]
@@ -89,7 +90,7 @@ impl Stage for TrainingStage<'_> {
     }
 }
 
-/// The paper's twin of all presses.
+/// The network of the paper, trained on all presses.
 #[derive(Serialize)]
 struct PaperTwin<'a> {
     #[serde(flatten)]
@@ -117,14 +118,14 @@ impl Stage for PaperTwin<'_> {
 }
 
 impl Run {
-    /// Trains every variant of the twin without the test presses, then the one that did best on validation presses with them. That one is
-    /// left in [`model_folder`](Self::model_folder).
+    /// Trains every variant of the twin without the test presses, then the one that is best on the
+    /// validation presses with them. That twin is saved in [`model_folder`](Self::model_folder).
     ///
     /// # Errors
-    /// The pairs are not there yet.
+    /// The pairs do not exist yet.
     pub fn train(&self) -> Result<(), WorkError> {
         let finished = self.run_stage(&self.training_stage()?)?;
-        // Where people look for it.
+        // The place where people look for the model.
         let target = self.model_folder();
         let model = Model::load(&finished.file(COMPLETE))?;
         if Model::load(&target).is_ok_and(|there| there.record == model.record) {
@@ -133,10 +134,11 @@ impl Run {
         Ok(model.save(&target)?)
     }
 
-    /// Trains the paper's twin on all presses, test presses too: its stress feature through its perceptron.
+    /// Trains the network of the paper on all presses, test presses too: a perceptron on the
+    /// paper's stress feature.
     ///
     /// # Errors
-    /// The stages before are not there, or not as they would be made now; a training that failed.
+    /// Earlier stages do not exist, or do not match their present inputs; a training that failed.
     pub fn train_paper_twin(&self) -> Result<Finished, WorkError> {
         let teaching = self.teaching()?;
         self.run_stage(&PaperTwin { teaching })
@@ -156,10 +158,10 @@ impl Run {
         Ok(TrainingStage { teaching })
     }
 
-    /// The trained twins, as they would be trained now.
+    /// The training stage, if it matches its present inputs.
     ///
     /// # Errors
-    /// They are not there, or not as they would be made now.
+    /// It does not exist, or does not match its present inputs.
     pub fn training(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.training_stage()?)?)
     }
@@ -169,7 +171,7 @@ fn nothing_trained() -> WorkError {
     WorkError::Input("no variant was trained".to_owned())
 }
 
-/// All that twins are trained with.
+/// All data of a training, read.
 struct Training<'a> {
     setup: &'a Setup<'a>,
     recording: Recording,
@@ -202,7 +204,7 @@ impl<'a> Training<'a> {
         })
     }
 
-    /// All presses teach that do not choose.
+    /// A split in which all presses but those of validation are training presses.
     fn everything(&self) -> Split {
         let mut everything = self.simulation.split.clone();
         everything.train.append(&mut everything.test);
@@ -210,7 +212,7 @@ impl<'a> Training<'a> {
         everything
     }
 
-    /// What the twin is made again of, to find how sure it is.
+    /// The data from which twins are refitted to calibrate the prediction intervals.
     fn lessons(&self) -> Lessons<'_> {
         Lessons {
             recording: &self.recording,
@@ -228,7 +230,7 @@ impl<'a> Training<'a> {
         }
     }
 
-    /// Epochs of all variants, and of the chosen one once more.
+    /// Number of epochs of all variants, and of the chosen one once more.
     fn n_epochs(&self) -> usize {
         let TrainSettings { epochs, variants, .. } = &self.settings.train;
         let n_variants = variants.as_ref().map_or(Variant::ALL.len(), Vec::len);
@@ -257,7 +259,7 @@ impl<'a> Training<'a> {
         )?)
     }
 
-    /// How each variant did, on presses that it never saw.
+    /// The errors of each variant on presses on which it was not trained.
     fn variants(&self, trained: &[Trained], chosen: &Trained) -> Vec<VariantRecord> {
         let test = &self.simulation.split.test;
         let record = |candidate: &Trained| VariantRecord {
@@ -270,7 +272,7 @@ impl<'a> Training<'a> {
         trained.iter().map(record).collect()
     }
 
-    /// Leaves a twin, which `split` says what it was taught with, in a folder.
+    /// Saves a twin in a folder. `split` says which presses it was trained on.
     fn keep(
         &self,
         trained: &Trained,

@@ -1,4 +1,5 @@
-"""Writes desk-readings.csv and desk-robot.csv: the presses of presses.csv as two programs on one desk would have logged them, each by its own clock.
+"""Writes desk-readings.csv and desk-robot.csv: the presses of presses.csv, in the form in which two
+programs on one desk would have logged them, each with its own clock.
 
 python3 crates/app/twintac/examples/data/desk.py
 """
@@ -12,7 +13,8 @@ ROBOT_STEP_S = 0.02
 TAXELS = range(8)
 BEGINS_S = 3.0  # on the microcontroller's clock
 
-# What the robot's clock shows when the microcontroller's shows 0, s, and how much faster it runs.
+# Offset of the robot's clock when the microcontroller's clock is at 0, s, and the ratio of their
+# rates.
 ROBOT_AHEAD_S = 1.12
 ROBOT_RATE = 1.003
 
@@ -26,7 +28,7 @@ for rows in presses:
     times_s = [float(row["time_s"]) for row in rows]
 
     def at(name: str, time_s: float) -> float:
-        """A column between its rows."""
+        """The value of a column at a time, linear between its rows."""
         after = min(max(1, sum(t < time_s for t in times_s)), len(rows) - 1)
         first, second = times_s[after - 1], times_s[after]
         values = [float(rows[index][name]) for index in (after - 1, after)]
@@ -42,7 +44,7 @@ for rows in presses:
         clock_s = ROBOT_AHEAD_S + ROBOT_RATE * (BEGINS_S + time_s)
         robot.append(f"{clock_s:.4f},{x:.3f},{y:.3f},{z:.3f},{at('force_n', time_s):.3f},{rows[0]['press']}")
 
-# A line that the microcontroller could not finish.
+# A line that the microcontroller did not finish.
 readings.append(readings[-1][:31])
 (DATA / "desk-readings.csv").write_text("\n".join(readings))
 (DATA / "desk-robot.csv").write_text("\n".join(robot) + "\n")

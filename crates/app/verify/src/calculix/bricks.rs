@@ -1,4 +1,4 @@
-//! 20-node hexahedra over a plan.
+//! 20-node hexahedra, extruded from a plan.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,13 @@ use glam::DVec3;
 
 use super::plan::Plan;
 
-/// A block of 20-node hexahedra, corners first, then midpoints of edges: the order that CalculiX shares with Abaqus.
+/// A block of 20-node hexahedra. Corners come first, then midpoints of edges: the order of CalculiX
+/// and Abaqus.
 pub(super) struct Bricks {
     pub(super) nodes_mm: Vec<DVec3>,
     pub(super) bricks: Vec<[usize; 20]>,
-    /// Bricks of the lowest and the uppermost layer: the first and the last of each of these many.
+    /// Number of hexahedra in one layer. The first ones are the lowest layer, the last ones the
+    /// uppermost.
     pub(super) n_layer: usize,
 }
 
@@ -22,7 +24,7 @@ impl Bricks {
             bricks: Vec::new(),
             n_layer: plan.quads.len(),
         };
-        // A node is the midpoint of two corners, which may be the same.
+        // A node is the midpoint of two corners, which may be the same one.
         let n_points = plan.points_mm.len();
         let mut known = BTreeMap::new();
         let mut node = |a: usize, b: usize| {
@@ -52,7 +54,8 @@ impl Bricks {
         mesh
     }
 
-    /// The lowest faces: four corners, then the midpoints of the edges that follow them.
+    /// The faces of the lowest layer: four corners, then the midpoints of the edges that follow
+    /// them.
     pub(super) fn bottom(&self) -> Vec<[usize; 8]> {
         let face = |brick: &[usize; 20]| std::array::from_fn(|i| brick[if i < 4 { i } else { i + 4 }]);
         self.bricks[..self.n_layer].iter().map(face).collect()

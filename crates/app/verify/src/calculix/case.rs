@@ -17,33 +17,33 @@ pub(super) const SIZE_MM: DVec3 = DVec3::new(34.0, 18.0, 8.5);
 /// Young's modulus, kPa.
 const YOUNGS_MODULUS_KPA: f64 = 70.0;
 
-/// Points along the board, through the row of taxels at y = 4 mm.
+/// The y coordinate of a line of points on the board, through the row of taxels at y = 4 mm.
 pub(super) const LINE_Y_MM: f64 = 4.0;
 
 /// One press.
 pub(super) struct Case {
-    /// A name in one word.
+    /// Its name in one word.
     pub(super) name: String,
-    /// What presses.
+    /// The indenter.
     pub(super) shape: Shape,
-    /// Where, mm.
+    /// The location, mm.
     pub(super) place_mm: DVec2,
-    /// How deep, mm.
+    /// The depths, mm.
     pub(super) depths_mm: Vec<f64>,
     /// Poisson's ratio.
     pub(super) poissons_ratio: f64,
 }
 
-/// How fine the reference is.
+/// Fineness of the reference mesh.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Level {
-    /// To see how far the fine one can be trusted.
+    /// Used to estimate the error of the fine one.
     Coarse,
-    /// What is compared to.
+    /// The reference.
     Fine,
 }
 
-/// All presses: the indenters at both of Poisson's ratios.
+/// All presses: each indenter with both of Poisson's ratios.
 pub(super) fn all() -> Vec<Case> {
     let mut cases = Vec::new();
     for poissons_ratio in [0.49, 0.4999] {
@@ -78,7 +78,7 @@ pub(super) fn all() -> Vec<Case> {
 }
 
 impl Case {
-    /// The same press, less deep.
+    /// The same press down to a smaller depth.
     pub(super) fn as_deep_as(&self, most_mm: f64) -> Self {
         let depths_mm = self.depths_mm.iter().copied();
         Self {
@@ -99,7 +99,7 @@ impl Case {
         YOUNGS_MODULUS_KPA / (3.0 * (1.0 - 2.0 * self.poissons_ratio))
     }
 
-    /// Whether the reference is a quarter of the gel.
+    /// Whether the reference models a quarter of the gel.
     pub(super) fn is_quarter(&self) -> bool {
         matches!(self.shape, Shape::Sphere { .. }) && self.place_mm == DVec2::ZERO
     }
@@ -159,7 +159,7 @@ impl Case {
         Ok(Bricks::extrude(&plan, &levels_mm))
     }
 
-    /// The gel as a sensor, as people describe theirs.
+    /// The gel as a sensor, described as users describe theirs.
     pub(super) fn sensor(&self) -> Result<Arc<Sensor>> {
         let mut text = format!(
             r#"
@@ -203,7 +203,7 @@ rate_hz = 55.0
         Ok(Arc::new(Sensor::parse("block", &text, &no_files)?))
     }
 
-    /// The press as a path, with points along the board to read the pressure at.
+    /// The press as a path, with points on the board at which the pressure is read.
     pub(super) fn path(&self) -> Result<PressPath> {
         let mut text = "summary = \"straight down\"\nindenter = \"indenter\"\nzero = \"touch\"\n".to_owned();
         for (time_s, depth_mm) in std::iter::once(&0.0).chain(&self.depths_mm).enumerate() {

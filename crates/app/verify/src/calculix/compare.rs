@@ -1,4 +1,4 @@
-//! Our answer beside CalculiX's.
+//! Results of this project's solver beside those of CalculiX.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -11,22 +11,23 @@ use super::case::{Case, line_mm, taxels_mm};
 use super::difference::{percent, pressure_percent};
 use super::reference::{Reference, ReferenceFrame};
 
-/// How deep quadratic elements are pressed, which take long, mm.
+/// Depth of the presses with quadratic elements, which take long, mm.
 const QUADRATIC_MM: f64 = 1.0;
 
-/// A press as two codes, or two kinds of element, see it.
+/// A press in two programs, or with two kinds of elements.
 pub(super) struct Compared {
     /// Name of the case.
     pub(super) case: String,
-    /// Whether what it is compared to is CalculiX's, and not our own quadratic elements'.
+    /// Whether the other values are those of CalculiX, and not of this project's quadratic
+    /// elements.
     pub(super) is_calculix: bool,
-    /// Nodes of our mesh.
+    /// Nodes of this project's mesh.
     pub(super) n_nodes: usize,
-    /// Depth by depth.
+    /// One frame for each depth.
     pub(super) frames: Vec<ComparedFrame>,
 }
 
-/// The gel at one depth; pairs are of our value and of the other.
+/// The gel at one depth. Pairs hold this project's value and the other one.
 pub(super) struct ComparedFrame {
     pub(super) depth_mm: f64,
     pub(super) force_n: [f64; 2],
@@ -36,7 +37,7 @@ pub(super) struct ComparedFrame {
     pub(super) line_kpa: Vec<[f64; 2]>,
 }
 
-/// Presses the gel as `twintac simulate --sensor F --path F` does, with the settings as they come.
+/// Presses the gel as `twintac simulate --sensor F --path F` does, with the default settings.
 pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
     let followed = follow(case, SimulateSettings::fine())?;
     if let Some(failure) = followed.failure {
@@ -51,7 +52,7 @@ pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
         "{}: CalculiX went to other depths; run it again",
         case.name
     );
-    // The first frame only touches.
+    // The first frame is the first contact, without depth.
     let frames = followed.frames[1..]
         .iter()
         .zip(&reference.frames)
@@ -81,7 +82,8 @@ pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
     })
 }
 
-/// Presses the gel with composite and with quadratic elements on the same nodes, as deep as [`QUADRATIC_MM`].
+/// Presses the gel with composite and with quadratic elements on the same nodes, down to
+/// [`QUADRATIC_MM`].
 pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
     let case = case.as_deep_as(QUADRATIC_MM);
     let mut settings = SimulateSettings::fine();
@@ -132,7 +134,7 @@ impl ComparedFrame {
         percent(self.force_n, self.force_n[1])
     }
 
-    /// Error at a taxel, %.
+    /// Error of the pressure at a taxel, %.
     pub(super) fn pressure_error_percent(&self, taxel: &str) -> f64 {
         let largest_kpa = self
             .pressure_kpa
@@ -143,7 +145,8 @@ impl ComparedFrame {
             .map_or(f64::NAN, |&pair| pressure_percent(pair, largest_kpa))
     }
 
-    /// Root mean square difference along the board, % of the largest pressure there.
+    /// Root mean square difference of the pressure along the board, % of the largest pressure
+    /// there.
     pub(super) fn roughness_percent(&self) -> f64 {
         let squares: f64 = self
             .line_kpa

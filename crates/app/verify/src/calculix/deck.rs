@@ -10,16 +10,18 @@ use super::bricks::Bricks;
 use super::case::{Case, SIZE_MM};
 use super::rigid::Skin;
 
-/// Contact stiffness, MPa/mm: some 200 times that of the gel's topmost layer.
+/// Contact stiffness, MPa/mm: about 200 times that of the gel's topmost layer.
 const CONTACT_STIFFNESS: f64 = 40.0;
 
-/// How far the indenter moves at once: where it moves farther, the contact's stiffness turns elements inside out at first.
+/// Largest motion of the indenter in one increment, mm. In larger increments the stiffness of the
+/// contact inverts elements at first.
 const LARGEST_INCREMENT_MM: f64 = 0.125;
 
-/// Largest unbalanced nodal force as part of the mean one. That of all nodes is far smaller than that of those in contact.
+/// Largest unbalanced nodal force, relative to the mean nodal force. The mean over all nodes is far
+/// smaller than that over nodes in contact.
 const RESIDUAL: f64 = 0.1;
 
-/// Writes the deck. Nodes and elements count from one; the gel's come first.
+/// Writes the deck. Numbers of nodes and elements start at one; those of the gel come first.
 pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
     let skin = Skin::of(&case.shape).context("there is no skin of this indenter")?;
     let mut deck = String::new();
@@ -104,7 +106,7 @@ fn write_materials(deck: &mut String, case: &Case) -> Result<()> {
         deck,
         "*MATERIAL, NAME=GEL\n*HYPERELASTIC, NEO HOOKE\n{c10_mpa:.9e}, {d1_per_mpa:.9e}"
     )?;
-    // No part of the indenter is free to move, so that its stiffness is of no account.
+    // All nodes of the indenter are prescribed, so its stiffness has no effect.
     writeln!(deck, "*MATERIAL, NAME=INDENTER\n*ELASTIC\n1., 0.")?;
     writeln!(deck, "*SOLID SECTION, ELSET=GEL, MATERIAL=GEL")?;
     writeln!(deck, "*SOLID SECTION, ELSET=INDENTER, MATERIAL=INDENTER")?;

@@ -1,4 +1,4 @@
-//! Reading a nodal field on the board, anywhere.
+//! Interpolation of a nodal field on the board.
 
 use glam::{DMat2, DVec2};
 
@@ -6,16 +6,16 @@ use glam::{DMat2, DVec2};
 pub(super) struct Faces<'a> {
     /// Four corners anticlockwise, then the midpoints of the edges that follow them.
     pub(super) faces: &'a [[usize; 8]],
-    /// Where a node is, mm.
+    /// Position of a node, mm.
     pub(super) at_mm: &'a dyn Fn(usize) -> DVec2,
-    /// What its value is.
+    /// Value at a node.
     pub(super) value: &'a dyn Fn(usize) -> f64,
 }
 
-/// Corners in the face's own coordinates.
+/// Corners in the face's natural coordinates.
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
-/// Rings of samples of a disc.
+/// Number of rings of samples in a disc.
 const RINGS: u32 = 6;
 
 impl Faces<'_> {
@@ -32,7 +32,7 @@ impl Faces<'_> {
         })
     }
 
-    /// The mean over a disc, from points that stand for equal areas.
+    /// The mean over a disc, from sample points that represent equal areas.
     pub(super) fn disc_mean(&self, center_mm: DVec2, radius_mm: f64) -> Option<f64> {
         let (mut sum, mut count) = (0.0, 0);
         for ring in 0..RINGS {
@@ -47,7 +47,8 @@ impl Faces<'_> {
         Some(sum / f64::from(count))
     }
 
-    /// Newton's method on the bilinear map of the corners (edges are straight); `None` outside.
+    /// The natural coordinates of a point, by Newton's method on the bilinear map of the corners
+    /// (edges are straight); `None` outside.
     fn own_coordinates(&self, face: &[usize; 8], point_mm: DVec2) -> Option<DVec2> {
         let corners: [DVec2; 4] = std::array::from_fn(|i| (self.at_mm)(face[i]));
         let low = corners
@@ -75,7 +76,7 @@ impl Faces<'_> {
     }
 }
 
-/// Those of the eight-node serendipity element.
+/// Shape functions of the eight-node serendipity element.
 fn shape_functions(own: DVec2) -> [f64; 8] {
     std::array::from_fn(|node| {
         let [x, y] = CORNERS[node % 4];
@@ -110,7 +111,8 @@ mod tests {
         };
         let point = DVec2::new(1.7, 1.4);
         assert!((faces.at(point).unwrap() - field(point)).abs() < 1e-9);
-        // The mean of y² over a disc is larger than in its middle by a quarter of the squared radius.
+        // The mean of y² over a disc exceeds the value at its centre by a quarter of the squared
+        // radius.
         let mean = faces.disc_mean(point, 0.5).unwrap();
         assert!((mean - field(point) - 0.0625).abs() < 1e-3);
         assert!(faces.at(DVec2::new(4.0, 0.0)).is_none());

@@ -1,4 +1,4 @@
-//! The same presses in an independent finite-element code, CalculiX.
+//! The same presses in CalculiX, an independent finite-element program.
 
 mod bricks;
 mod case;
@@ -22,17 +22,17 @@ use case::{Case, LINE_Y_MM, Level, line_mm};
 use compare::Compared;
 use reference::Reference;
 
-/// Keeps what CalculiX found.
+/// The file of CalculiX's results.
 const REFERENCES: &str = "crates/app/verify/references/calculix.json";
 
-/// Largest error of the force.
+/// Largest accepted error of the force.
 const FORCE_LIMIT_PERCENT: f64 = 3.0;
-/// Largest error of the pressure at a taxel.
+/// Largest accepted error of the pressure at a taxel.
 const PRESSURE_LIMIT_PERCENT: f64 = 5.0;
-/// Largest root mean square difference of the pressure along the board.
+/// Largest accepted root mean square difference of the pressure along the board.
 const ROUGHNESS_LIMIT_PERCENT: f64 = 3.0;
 
-/// Compares with what CalculiX found before.
+/// Compares with the kept results of CalculiX.
 pub(crate) fn run(_: Effort) -> Result<Outcome> {
     let references = reference::read(Path::new(REFERENCES))?;
     let (mut compared, mut figures) = (Vec::new(), Vec::new());
@@ -71,17 +71,21 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
     }
     Ok(Outcome {
         done: format!(
-            "A block of gel, 34 × 18 × 8.5 mm, bonded below, E = 70 kPa, compressible neo-Hookean \
-             (`W = μ/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)²`), is pressed without friction by a sphere (R = 12.5 mm, in the middle), a flat cylinder \
-             (R = 5 mm, rounded by 0.8 mm, at (3, 2)) and a bar (3 × 10 mm, rounded by 0.5 mm, at (-5, 1)). CalculiX 2.20 solves it with \
-             20-node hexahedra of reduced integration (C3D20R) and surface-to-surface contact; TwinTac as `twintac simulate --sensor F --path F` \
-             does, with the settings as they come. Pressure is `-tr(σ)/3` on the board, its mean over a taxel's port of 1 mm radius; taxels \
-             are where those of `sensors/phystac.toml` are. Errors of a pressure are parts of itself, or of the largest at any taxel where \
-             it is below a twentieth of that; along the board (y = {LINE_Y_MM} mm) they are the root mean square as part of the largest \
-             pressure there, which is what a checkerboard would break at ν = 0.4999. Where CalculiX finds no equilibrium, as at ν = 0.4999, TwinTac's \
-             quadratic elements on the same nodes stand in for it, to a depth of 1 mm.\n\n\
-             What CalculiX found is kept in `{REFERENCES}`; `cargo xtask verify calculix --ccx NAME` runs it anew (Debian package \
-             calculix-ccx) for the cases whose names start so, on a coarse and on a fine mesh, in `{}`.",
+            "A block of gel, 34 × 18 × 8.5 mm, bonded below, E = 70 kPa, compressible neo-Hookean (`W = μ/2 \
+             (J^(-2/3) I1 - 3) + K/2 (J - 1)²`), is pressed without friction by a sphere (R = 12.5 mm, in \
+             the middle), a flat cylinder (R = 5 mm, rounded by 0.8 mm, at (3, 2)) and a bar (3 × 10 mm, \
+             rounded by 0.5 mm, at (-5, 1)). CalculiX 2.20 solves it with 20-node hexahedra of reduced \
+             integration (C3D20R) and surface-to-surface contact; TwinTac solves it as `twintac simulate \
+             --sensor F --path F` does, with default settings. Pressure is `-tr(σ)/3` on the board, \
+             averaged over a taxel's port with a radius of 1 mm; the taxels are at the positions of \
+             `sensors/phystac.toml`. The error of a pressure is relative to that pressure, or, where it is \
+             below a twentieth of the largest pressure at any taxel, to the largest. Along the board (y = \
+             {LINE_Y_MM} mm) the error is the root mean square, relative to the largest pressure there; a \
+             checkerboard pattern at ν = 0.4999 would increase it. Where CalculiX finds no equilibrium, as \
+             at ν = 0.4999, the reference is TwinTac's quadratic elements on the same nodes, to a depth of \
+             1 mm.\n\nThe results of CalculiX are stored in `{REFERENCES}`; `cargo xtask verify calculix \
+             --ccx NAME` computes them again (Debian package calculix-ccx) for the cases whose names start \
+             with NAME, on a coarse and on a fine mesh, in `{}`.",
             reference::FOLDER
         ),
         figures,
@@ -142,7 +146,8 @@ fn figures_of(compared: &Compared) -> Vec<Figure> {
     figures
 }
 
-/// How far CalculiX can be trusted: the largest differences between two of its own meshes, and the deepest node inside the indenter.
+/// The accuracy of CalculiX's results: the largest differences between two of its own meshes, and
+/// the deepest node inside the indenter.
 fn trust(case: &Case, fine: &Reference, coarse: &Reference) -> [Figure; 3] {
     let [force, pressure] = coarse.largest_difference_percent(fine);
     let penetrations_mm = fine.frames.iter().map(|frame| frame.penetration_mm);
@@ -161,7 +166,7 @@ fn trust(case: &Case, fine: &Reference, coarse: &Reference) -> [Figure; 3] {
     ]
 }
 
-/// Pressure along the board.
+/// The plot of the pressure along the board.
 fn plot(compared: &[Compared]) -> Scene {
     let panel = |compared: &Compared| {
         let series = |side: usize| {
@@ -194,7 +199,8 @@ fn plot(compared: &[Compared]) -> Scene {
     .scene()
 }
 
-/// Runs CalculiX on the cases whose names start so, on two meshes each, and keeps what it finds.
+/// Runs CalculiX on the cases whose names start with `prefix`, on two meshes each, and keeps the
+/// results.
 pub(crate) fn compute_references(prefix: &str) -> Result<()> {
     let file = Path::new(REFERENCES);
     let cases = case::all();

@@ -1,13 +1,14 @@
-//! What CalculiX writes.
+//! Reads the output files of CalculiX.
 
 use anyhow::{Context, Result};
 
-/// Node numbers (from one) and values, `[n_values]` each, of one field at one time.
+/// One field at one time: node numbers (from one) and values, `[n_values]` each.
 pub(super) type Field = Vec<(usize, Vec<f64>)>;
 
 /// All blocks of a field in a `.frd` file, in order of time.
 ///
-/// A block starts with ` -4  NAME`, its lines with ` -1`, a node in ten columns and values in twelve each; it ends with ` -3`.
+/// A block starts with ` -4  NAME`, its lines with ` -1`, a node in ten columns and values in
+/// twelve each; it ends with ` -3`.
 pub(super) fn fields(frd: &str, name: &str) -> Result<Vec<Field>> {
     let mut found: Vec<Field> = Vec::new();
     let mut is_inside = false;
@@ -43,7 +44,8 @@ pub(super) fn fields(frd: &str, name: &str) -> Result<Vec<Field>> {
     Ok(found)
 }
 
-/// Total reaction force along z in each block of a `.dat` file: the last number of the line after each heading.
+/// Total reaction force along z in each block of a `.dat` file: the last number of the line after
+/// each heading.
 pub(super) fn total_force_z(dat: &str) -> Result<Vec<f64>> {
     let mut lines = dat.lines();
     let mut found = Vec::new();

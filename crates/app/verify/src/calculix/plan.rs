@@ -9,7 +9,7 @@ pub(super) struct Plan {
     pub(super) quads: Vec<[usize; 4]>,
 }
 
-/// A stretch of short edges on a line.
+/// A part of a line that has short edges.
 #[derive(Clone, Copy)]
 pub(super) struct Fine {
     pub(super) from_mm: f64,
@@ -17,10 +17,11 @@ pub(super) struct Fine {
     pub(super) edge_mm: f64,
 }
 
-/// Growth of the edge length per length away from a fine stretch.
+/// Growth of the edge length per length away from a part with short edges.
 const SLOPE: f64 = 0.4;
 
-/// Divides a line into edges that are short in the fine stretches, grow linearly away from them, and are nowhere longer than `edge_mm`.
+/// Divides a line into edges that are short in the given parts, grow linearly away from them, and
+/// are nowhere longer than `edge_mm`.
 pub(super) fn divide([low_mm, high_mm]: [f64; 2], edge_mm: f64, fine: &[Fine]) -> Vec<f64> {
     const SAMPLES: usize = 2000;
     let wanted_mm = |at: f64| {
@@ -48,7 +49,7 @@ pub(super) fn divide([low_mm, high_mm]: [f64; 2], edge_mm: f64, fine: &[Fine]) -
 }
 
 impl Plan {
-    /// All rectangles between lines.
+    /// All rectangles between grid lines.
     pub(super) fn tensor(x_mm: &[f64], y_mm: &[f64]) -> Self {
         let points_mm = y_mm
             .iter()
@@ -62,8 +63,9 @@ impl Plan {
         Self { points_mm, quads }
     }
 
-    /// Rings about a centre: a square with `n_side` quadrilaterals along each side, circles, and on to the rectangle. `radii_mm` are those
-    /// of the circles, `outwards` the parts of the way from the last one to the rectangle, up to 1.
+    /// Rings about a centre: a square with `n_side` quadrilaterals along each side, then circles,
+    /// then rings that approach the rectangle. `radii_mm` are the radii of the circles. `outwards`
+    /// are fractions of the way from the last circle to the rectangle, up to 1.
     pub(super) fn rings(
         center_mm: DVec2,
         n_side: usize,
@@ -71,7 +73,8 @@ impl Plan {
         outwards: &[f64],
         [low_mm, high_mm]: [DVec2; 2],
     ) -> Self {
-        // The square's corners are as far from the first circle as its sides are from its corners, about.
+        // With this size the square's corners are about as far from the first circle as its sides
+        // are from its corners.
         let half_mm = 0.55 * radii_mm[0];
         let steps: Vec<f64> = (0..=n_side)
             .map(|i| half_mm * (2.0 * i as f64 / n_side as f64 - 1.0))
@@ -117,7 +120,8 @@ impl Plan {
     }
 }
 
-/// Points along the sides of a square of `n * n` cells, anticlockwise from its lowest corner.
+/// Index of a point on the perimeter of a square of `n * n` cells, anticlockwise from its lowest
+/// corner.
 fn perimeter(at: usize, n: usize) -> usize {
     let (side, step) = (at / n, at % n);
     let (i, j) = match side {

@@ -1,4 +1,4 @@
-//! What CalculiX finds, and the file that keeps it.
+//! Results of CalculiX, and the file that keeps them.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -15,10 +15,10 @@ use super::face::Faces;
 use super::{deck, output};
 use crate::files::write_whole;
 
-/// Where CalculiX works, a folder a mesh.
+/// Working folder of CalculiX, with one folder for each mesh.
 pub(super) const FOLDER: &str = "target/calculix";
 
-/// What tells CalculiX how many threads to use, and how many if nothing does.
+/// The variable that sets CalculiX's number of threads, and the value if it is not set.
 const THREADS: (&str, &str) = ("OMP_NUM_THREADS", "2");
 
 const KPA_PER_MPA: f64 = 1000.0;
@@ -28,13 +28,13 @@ const KPA_PER_MPA: f64 = 1000.0;
 pub(super) struct Reference {
     /// Name of the case.
     pub(super) case: String,
-    /// Whether it is what is compared to.
+    /// Whether it is the reference for comparison.
     pub(super) is_fine: bool,
     /// Elements of the gel.
     pub(super) n_elements: usize,
     /// Nodes of the gel.
     pub(super) n_nodes: usize,
-    /// Depth by depth.
+    /// One frame for each depth.
     pub(super) frames: Vec<ReferenceFrame>,
 }
 
@@ -42,18 +42,18 @@ pub(super) struct Reference {
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct ReferenceFrame {
     pub(super) depth_mm: f64,
-    /// Force on the board.
+    /// Force on the board, N.
     pub(super) force_n: f64,
-    /// Deepest node of the gel's top in the indenter.
+    /// Largest penetration of a node of the gel's top into the indenter, mm.
     pub(super) penetration_mm: f64,
-    /// -tr(σ)/3, its mean over each taxel's port.
+    /// Mean of -tr(σ)/3 over each taxel's port, kPa.
     pub(super) pressure_kpa: BTreeMap<String, f64>,
-    /// -tr(σ)/3 at points along the board.
+    /// -tr(σ)/3 at points along the board, kPa.
     pub(super) line_kpa: Vec<f64>,
 }
 
 impl Reference {
-    /// Largest differences from another mesh's force and pressures at the taxels, %.
+    /// Largest differences of force and of pressures at the taxels from another mesh, %.
     pub(super) fn largest_difference_percent(&self, other: &Self) -> [f64; 2] {
         let (mut force, mut pressure): (f64, f64) = (0.0, 0.0);
         for (a, b) in self.frames.iter().zip(&other.frames) {
@@ -67,7 +67,8 @@ impl Reference {
     }
 }
 
-/// Runs CalculiX, unless the folder holds what it made of the same deck. Where it gives up early, the depths until then are all there are.
+/// Runs CalculiX, unless the folder has its results for the same deck. If CalculiX gives up early,
+/// only the depths until then are returned.
 pub(super) fn compute(case: &Case, level: Level) -> Result<Reference> {
     let gel = case.bricks(level)?;
     let deck = deck::write(case, &gel)?;
@@ -75,7 +76,7 @@ pub(super) fn compute(case: &Case, level: Level) -> Result<Reference> {
     let folder = Path::new(FOLDER).join(format!("{}-{size}", case.name));
     std::fs::create_dir_all(&folder)?;
     let input = folder.join("press.inp");
-    // The log is written last.
+    // The log is written last, so it shows that the run is complete.
     let log = folder.join("press.log");
     if !log.exists() || std::fs::read_to_string(&input).ok().as_ref() != Some(&deck) {
         std::fs::write(&input, &deck)?;
@@ -90,7 +91,7 @@ pub(super) fn compute(case: &Case, level: Level) -> Result<Reference> {
     let forces_n = output::total_force_z(&dat)?;
     let stresses = output::fields(&frd, "STRESS")?;
     let gaps = output::fields(&frd, "CONTACT")?;
-    // The best that it had when it gave up is no equilibrium, and has no total force.
+    // When CalculiX gives up, its last state is no equilibrium, and has no total force.
     let n_frames = forces_n.len();
     ensure!(
         (1..=case.depths_mm.len()).contains(&n_frames)
@@ -156,7 +157,7 @@ fn run_ccx(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What is kept in a file.
+/// Reads references from a file.
 pub(super) fn read(file: &Path) -> Result<Vec<Reference>> {
     let text = match std::fs::read_to_string(file) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -165,11 +166,11 @@ pub(super) fn read(file: &Path) -> Result<Vec<Reference>> {
     serde_json::from_str(&text).with_context(|| format!("reading {}", file.display()))
 }
 
-/// Keeps references, sorted, in a file.
+/// Writes references, sorted, to a file.
 pub(super) fn write(file: &Path, references: &mut [Reference]) -> Result<()> {
     references.sort_by(|a, b| (&a.case, a.is_fine).cmp(&(&b.case, b.is_fine)));
     for frame in references.iter_mut().flat_map(|reference| &mut reference.frames) {
-        // Six digits are more than CalculiX writes of a stress.
+        // CalculiX writes fewer than six digits of a stress.
         let numbers = frame.pressure_kpa.values_mut().chain(&mut frame.line_kpa);
         numbers.for_each(|kpa| *kpa = (*kpa * 1e4).round() / 1e4);
     }

@@ -1,6 +1,7 @@
-//! The surface of a rigid indenter, as a skin of solid elements with curved faces.
+//! The surface of a rigid indenter as a skin of solid elements with curved faces.
 //!
-//! Every indenter here is a flat plate (a disc, a rectangle, or, for a ball, a mere point), grown by a radius in all directions.
+//! Every indenter here is a flat plate (a disc, a rectangle, or, for a ball, a point), expanded by
+//! a radius in all directions.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -8,34 +9,35 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::{DVec2, DVec3};
 use twintac_shape::Shape;
 
-/// Angle that a face spans around a ball, or around a disc, radians.
+/// Angle of one face around a ball or a disc, radians.
 const WIDE_RAD: f64 = 0.3;
 
-/// Angle that a face spans across a rounding, radians.
+/// Angle of one face across a rounded edge, radians.
 const ROUNDING_RAD: f64 = 0.53;
 
-/// Part of a ball's underside that can touch, radians from its lowest point.
+/// Angle of the part of a ball that can touch, from its lowest point, radians.
 const BALL_RAD: f64 = 1.1;
 
-/// Heights of the walls above the rounding, mm.
+/// Heights of the walls above the rounded edge, mm.
 const WALL_MM: [f64; 2] = [1.5, 3.0];
 
 /// A shell of 15-node wedges and 20-node hexahedra.
 pub(super) struct Skin {
-    /// The indenter's lowest point is the origin, mm.
+    /// Positions of the nodes, mm. The indenter's lowest point is the origin.
     pub(super) nodes_mm: Vec<DVec3>,
-    /// Corners of the outer face, of the inner one, then midpoints: of the outer face's edges, the inner one's, and those between.
+    /// Nodes of each element: corners of the outer face, of the inner face, then midpoints of the
+    /// outer face's edges, of the inner face's edges, and of the edges between the faces.
     pub(super) elements: Vec<Vec<usize>>,
 }
 
-/// A place on the rim of the plate, and the direction in which the rounding leaves it.
+/// A point on the rim of the plate, and the direction in which the rounded edge leaves it.
 #[derive(Clone, Copy)]
 struct Rim {
     at_mm: DVec2,
     outwards: DVec2,
 }
 
-/// How far around the rounding, and how far up the wall.
+/// The angle around the rounded edge, and the height on the wall.
 #[derive(Clone, Copy)]
 struct Ring {
     turn_rad: f64,
@@ -66,7 +68,7 @@ impl Skin {
             nodes_mm: Vec::new(),
             elements: Vec::new(),
         };
-        // Places come as corners and midpoints in turn.
+        // Points alternate between corners and midpoints.
         let place = |around: usize, ring: Ring, part: f64| {
             let Rim { at_mm, outwards } = rim[around % rim.len()];
             let grown_mm = part * radius_mm;
@@ -92,8 +94,9 @@ impl Skin {
         Some(skin)
     }
 
-    /// Adds the element of a face, given where it is in the skin (1: outside, 0.5: inside). Where its last edge has no length, it is a triangle;
-    /// where another one has none, it is nothing.
+    /// Adds the element of a face. `face` returns its nodes at a relative radius (1: outer, 0.5:
+    /// inner). If the last edge has no length, the face is a triangle; if another edge has none,
+    /// there is no element.
     fn add(&mut self, face: impl Fn(f64) -> Vec<DVec3>) {
         const SAME_MM: f64 = 1e-9;
         let [outer, middle, inner] = [1.0, 0.75, 0.5].map(|part| {
@@ -113,7 +116,7 @@ impl Skin {
         self.elements.push((first..self.nodes_mm.len()).collect());
     }
 
-    /// Makes one node of those at one place.
+    /// Merges nodes at the same position.
     fn merge(&mut self) {
         let mut known = BTreeMap::new();
         let mut nodes_mm = Vec::new();
@@ -129,7 +132,7 @@ impl Skin {
     }
 }
 
-/// From the plate outwards.
+/// The rings from the plate outwards.
 fn rings(is_ball: bool) -> Vec<Ring> {
     let (most_rad, step_rad) = if is_ball {
         (BALL_RAD, WIDE_RAD)
@@ -162,7 +165,7 @@ fn disc(radius_mm: f64) -> Vec<Rim> {
         .collect()
 }
 
-/// Around four corners, and along four sides.
+/// The rim of a rectangle: around four corners, and along four sides.
 fn rectangle(half_mm: DVec2) -> Vec<Rim> {
     let n = 2 * (FRAC_PI_2 / ROUNDING_RAD).ceil() as usize;
     let corners = [

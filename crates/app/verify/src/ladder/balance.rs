@@ -1,4 +1,4 @@
-//! Forces from outside sum to zero.
+//! External forces sum to zero.
 
 use std::sync::Arc;
 
@@ -11,25 +11,25 @@ use twintac_simulate::{Gel, PressPlace, SimulateSettings};
 use super::random_press::ENOUGH_N;
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
-/// Where each press goes: an indenter of the sensor, place in mm, tilt in radians.
+/// The presses: an indenter of the sensor, location in mm, tilt in radians.
 const PRESSES: [(&str, [f64; 2], f64); 3] = [
     ("sphere-25", [0.0, 0.0], 0.0),
     ("cylinder", [4.0, 2.0], 0.1),
     ("cube", [-7.0, -3.0], 0.2),
 ];
 
-/// Part of the gel's height to press into, and steps on the way.
+/// Depth as a fraction of the gel's height, and number of steps.
 const DEPTH: f64 = 0.7;
 const STEPS: u32 = 16;
 
-/// What came of a press.
+/// The result of a press.
 struct Pressed {
-    /// Largest sum of the forces from outside over the indenter's force.
+    /// Largest sum of the external forces, divided by the indenter's force.
     unbalanced: f64,
-    /// Of the indenter and of the shell at the end, N.
+    /// Force of the indenter and of the shell at the end, N.
     force_n: f64,
     shell_n: f64,
-    /// Depth in mm and size of the force in N, step by step.
+    /// Depth in mm and magnitude of the force in N, for each step.
     indenter: Vec<[f64; 2]>,
     shell: Vec<[f64; 2]>,
     /// Why the press ended early, if it did.
@@ -84,21 +84,22 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let labels = ["depth, mm", "force, N"];
     Ok(Outcome {
         done: format!(
-            "The gel of the sensor `phystac`, with its shell, is pressed in {STEPS} steps into {} % of its height, or to {ENOUGH_N} N, with \
-             a tolerance of 1e-8. The forces of the indenter, the board and the shell are summed, each from what that body's nodes feel; \
-             what is left of the sum, over the indenter's force, is the largest of all steps.{ended}",
+            "The gel of the sensor `phystac`, with its shell, is pressed in {STEPS} steps to {} % of its \
+             height, or to {ENOUGH_N} N, with a tolerance of 1e-8. The forces of the indenter, the board \
+             and the shell on their nodes are summed. The figure is the largest residual of this sum in all \
+             steps, relative to the indenter's force.{ended}",
             100.0 * DEPTH
         ),
         figures,
         plots: vec![Plot {
             name: "forces",
-            caption: "Sizes of the forces: of the indenter, and, dashed, of the shell.".into(),
+            caption: "Magnitudes of the forces of the indenter, and, dashed, of the shell.".into(),
             scene: plots::lines("Forces from outside", labels, false, series),
         }],
     })
 }
 
-/// Presses in [`STEPS`] steps, until the force is enough or a step fails.
+/// Presses in [`STEPS`] steps, until the force is large enough or a step fails.
 fn press(gel: &Gel, name: &str, at_mm: [f64; 2], tilt_rad: f64) -> Result<Pressed> {
     let sensor = gel.sensor();
     let shape = sensor

@@ -1,4 +1,4 @@
-//! Known materials, found again in noisy forces.
+//! Known materials are recovered from noisy forces.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -18,26 +18,27 @@ use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};
 
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
-/// Largest error, and largest half width of a 95 % interval, %.
+/// Largest accepted error, and largest accepted half width of a 95 % interval, %.
 const LIMIT: f64 = 2.0;
 
-/// Noise of each sample of the force over the largest force of its press.
+/// Standard deviation of the noise of a force sample, relative to the largest force of its press.
 const NOISE: f64 = 0.01;
 
-/// Samples of the force per second.
+/// Sample rate of the force, Hz.
 const RATE_HZ: f64 = 1000.0;
 
-/// Frames that the fit simulates of a press, about; and those that the measurement is made of, of each leg.
+/// Approximate number of simulated frames of a press in the fit, and number of frames of each leg
+/// in the simulated measurement.
 const FRAMES: usize = 120;
 const LEG_FRAMES: u32 = 160;
 
-/// How deep nodes may be inside an indenter, mm: far below the noise.
+/// Accepted penetration of nodes into an indenter, mm: its effect is far below the noise.
 const PENETRATION_MM: f64 = 2e-4;
 
 /// Seed of all noise.
 const SEED: u64 = 1;
 
-/// Windows that residuals are averaged over for the plot.
+/// Number of windows in which residuals are averaged for the plot.
 const WINDOWS: usize = 100;
 
 const BLOCK: &str = r#"
@@ -67,17 +68,17 @@ port_radius_mm = 1.0
 channel = 0
 "#;
 
-/// A material to be found.
+/// A material that has to be recovered.
 struct Case {
     name: &'static str,
     truth: Material,
     start: Material,
-    /// Names of what is free, and true values.
+    /// Names and true values of the free constants.
     free: Vec<(&'static str, f64)>,
     presses: Vec<Press>,
 }
 
-/// A motion in legs of constant speed: how long each takes, s, and how deep it ends, mm.
+/// A motion in legs of constant speed: duration of each leg, s, and depth at its end, mm.
 struct Press {
     shape: Shape,
     legs: &'static [[f64; 2]],
@@ -85,20 +86,22 @@ struct Press {
 
 const BALL: Shape = Shape::Sphere { radius_mm: 6.0 };
 
-/// Wide beside the block's height, so that gel below it has nowhere to go.
+/// A ball that is wide compared with the block's height, so that the gel below it is confined.
 const WIDE_BALL: Shape = Shape::Sphere { radius_mm: 40.0 };
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let mut cases = cases();
     cases.truncate(effort.choose(2, cases.len()));
     let mut done = format!(
-        "A bonded block of gel, 30 × 20 × 8 mm, is pressed by balls as a bench would press it. The force is sampled {RATE_HZ} times a second, each \
-         sample with noise of {} % of the largest force of its press (seed {SEED}). The fit starts from another material and simulates about \
-         {FRAMES} frames of a press, the measurement {LEG_FRAMES} of each of its legs. Half widths are those of the 95 % intervals that the \
-         fit reports, of the noise alone: with so many samples they are narrower than what other frames make of a constant, and another mesh \
-         where the surface is sought, since the fit meshes for the depth that the bench reports. Errors of several half widths are of that \
-         kind.\n\n\
-         | material | unknown | true | start | found | 95 % interval |\n|---|---|---:|---:|---:|---|\n",
+        "A bonded block of gel, 30 × 20 × 8 mm, is pressed by balls as in a test setup. The force is \
+         sampled {RATE_HZ} times a second, each sample with noise of {} % of the largest force of its press \
+         (seed {SEED}). The fit starts from another material and simulates about {FRAMES} frames of a \
+         press; the measurement is simulated with {LEG_FRAMES} frames for each of its legs. Half widths are \
+         those of the 95 % intervals that the fit reports, which include the noise only. With so many \
+         samples they are smaller than the effect of the different frames of fit and measurement on a \
+         constant. Where the height of the surface is fitted, the meshes differ as well, because the fit \
+         meshes for the reported depth. These effects cause errors of several half widths.\n\n| material | \
+         unknown | true | start | found | 95 % interval |\n|---|---|---:|---:|---:|---|\n",
         100.0 * NOISE
     );
     let mut figures = Vec::new();
@@ -130,10 +133,10 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         figures,
         plots: vec![Plot {
             name: "residuals",
-            caption: "Each line has the means over hundredths of a press; 1, 2 … are the materials in the order of the table.".into(),
+            caption: "Each line shows means over hundredths of a press; 1, 2 … are the materials in the order of the table.".into(),
             scene: Panels {
-                title: "Fitted less measured force".into(),
-                x_label: "part of the press (%)".into(),
+                title: "Fitted minus measured force".into(),
+                x_label: "fraction of the press (%)".into(),
                 panels,
                 panel_height_px: 80.0,
                 logarithmic: false,
@@ -143,7 +146,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-/// Fitted less measured force, % of the largest: means over [`WINDOWS`] parts of each press.
+/// Fitted minus measured force, % of the largest: means in [`WINDOWS`] parts of each press.
 fn residuals(number: usize, found: &Fit) -> Panel {
     let line = |(index, signal): (usize, &FittedSignal)| {
         let largest = signal.measured.iter().copied().fold(0.0, f64::max);
@@ -193,14 +196,14 @@ fn cases() -> Vec<Case> {
     let shear = ("shear_modulus_kpa", 20.0);
     vec![
         Case {
-            name: "neo-Hookean, and where the surface is",
+            name: "neo-Hookean and surface height",
             truth: neo_hookean(20.0, 0.47, &[]),
             start: neo_hookean(35.0, 0.47, &[]),
             free: vec![shear, ("depth_offset_mm", 0.2)],
             presses: vec![ball(&[[30.0, 4.0], [30.0, 0.0]])],
         },
         Case {
-            name: "neo-Hookean, and its bulk modulus",
+            name: "neo-Hookean and bulk modulus",
             truth: neo_hookean(20.0, 0.45, &[]),
             start: neo_hookean(35.0, 0.40, &[]),
             free: vec![shear, ("bulk_modulus_kpa", 20.0 * 2.9 / 0.3)],
@@ -263,13 +266,13 @@ fn gel(material: &Material) -> Result<Gel> {
         ..SimulateSettings::fine()
     };
     settings.solver.tolerance = 1e-6;
-    // Steps of other lengths must not differ by what they leave of penetration.
+    // Steps of different lengths must not differ by their remaining penetration.
     settings.solver.penetration_mm = PENETRATION_MM;
     let sensor = Sensor::parse("block", BLOCK, &none)?;
     Ok(Gel::new(Arc::new(sensor), settings).with_material(material.clone()))
 }
 
-/// A curve as a bench would measure it that takes the surface to be lower than it is.
+/// A simulated measurement on a bench that assumes the surface too low by `offset_mm`.
 fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut RandomStream) -> Result<Curve> {
     let place = PressPlace {
         indenter: "ball".into(),
@@ -284,7 +287,7 @@ fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut RandomStream) 
             .fold(0.0, f64::max),
         enough_force_n: None,
     };
-    // Frames stand closer where a leg starts, as relaxation is fastest there.
+    // Frames are closer together at the start of a leg, where relaxation is fastest.
     let mut keyframes = vec![Keyframe {
         time_s: 0.0,
         depth_mm: 0.0,

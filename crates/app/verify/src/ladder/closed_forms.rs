@@ -8,10 +8,11 @@ use super::patch_test::{ELEMENTS, TIGHT, body_of, deform, irregular_block};
 use super::rubbers::{Rubber, rubbers};
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
-/// How a block is deformed by an amount, and the first Piola–Kirchhoff stress of that, kPa.
+/// Deformation gradient of a block and first Piola–Kirchhoff stress, kPa, for an amount of
+/// deformation.
 type ClosedForm = fn(&Rubber, f64) -> (DMat3, DMat3);
 
-/// A family of deformations and the amounts that are tried, each from rest.
+/// Families of deformations, and the amounts that are tested, each from rest.
 const FAMILIES: [(&str, ClosedForm, [f64; 6]); 4] = [
     ("uniaxial", uniaxial, [0.6, 0.75, 0.9, 1.1, 1.3, 1.6]),
     ("equibiaxial", equibiaxial, [0.75, 0.85, 0.95, 1.1, 1.2, 1.35]),
@@ -56,10 +57,12 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let labels = ["stretch", "first Piola–Kirchhoff stress, kPa"];
     Ok(Outcome {
         done: format!(
-            "The boundary of an irregular block ({} nodes) is moved as each closed form says, to six amounts; the mean \
-             stress is that of the forces on the boundary, `P = Σ f ⊗ X / V`. Closed forms are slopes of the energies in the principal \
-             stretches, written apart from the solver's; free sides are where their stress is zero. Largest error of all materials and \
-             amounts over the stress, or over the shear modulus where the stress is smaller.",
+            "The boundary of an irregular block ({} nodes) is displaced as each closed form prescribes, to \
+             six amounts. The mean stress is that of the forces on the boundary, `P = Σ f ⊗ X / V`. The \
+             closed forms are derivatives of the energies with respect to the principal stretches, \
+             implemented independently of the solver; free sides are found from zero stress. The figures \
+             are the largest errors of all materials and amounts, relative to the stress, or to the shear \
+             modulus where the stress is smaller.",
             mesh.n_nodes_refined()
         ),
         figures,
@@ -71,7 +74,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-/// A short upright tick.
+/// A short vertical tick for the plot.
 fn cross(x: f64, y: f64, color: usize) -> twintac_plot::Series {
     plots::line("", color, vec![[x, y - 2.5], [x, y + 2.5]])
 }
@@ -93,13 +96,14 @@ fn of_stretches(rubber: &Rubber, stretches: DVec3) -> (DMat3, DMat3) {
     (DMat3::from_diagonal(stretches), DMat3::from_diagonal(stress_kpa))
 }
 
-/// Shear of x along z. The stretches in that plane are `λ` and `1/λ` with `λ - 1/λ = γ`. With their axes `N_i` at rest and `n_i` now,
-/// `F = Σ λ_i n_i ⊗ N_i` and `P = Σ P_i n_i ⊗ N_i`.
+/// Simple shear of x along z. The stretches in that plane are `λ` and `1/λ` with `λ - 1/λ = γ`.
+/// With their axes `N_i` at rest and `n_i` in the deformed state, `F = Σ λ_i n_i ⊗ N_i` and
+/// `P = Σ P_i n_i ⊗ N_i`.
 fn simple_shear(rubber: &Rubber, amount: f64) -> (DMat3, DMat3) {
     let gradient = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(amount, 0.0, 1.0));
     let stretch = 0.5 * (amount + amount.hypot(2.0));
     let stretches = DVec3::new(stretch, 1.0, 1.0 / stretch);
-    // Axes at rest: (1, 0, λ) is stretched by λ, as FᵀF (1, 0, λ) = λ² (1, 0, λ).
+    // Axes at rest: (1, 0, λ) is stretched by λ, because FᵀF (1, 0, λ) = λ² (1, 0, λ).
     let first = DVec3::new(1.0, 0.0, stretch).normalize();
     let axes = [first, DVec3::Y, first.cross(DVec3::Y)];
     let stress_kpa = rubber.principal_stress_kpa(stretches);

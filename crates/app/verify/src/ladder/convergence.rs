@@ -1,4 +1,4 @@
-//! Convergence with the mesh of what a sensor gives.
+//! Mesh convergence of a sensor's force and pressures.
 
 use anyhow::{Context, Result};
 use glam::DVec3;
@@ -14,10 +14,11 @@ const BALL: Shape = Shape::Sphere { radius_mm: 12.5 };
 const DEPTH_MM: f64 = 2.0;
 const PLACE_MM: [f64; 2] = [1.0, -2.0];
 
-/// Taxels whose pressure is followed: below the ball, and beside it.
+/// Taxels whose pressure is compared: one below the ball, and one beside it.
 const TAXELS: [&str; 2] = ["t1", "t3"];
 
-/// Force, N, and pressure at the taxels, kPa, with this many pressure cells over the gel's height; and the nodes of the mesh.
+/// Force, N, and pressure at the taxels, kPa, with `n` pressure cells over the gel's height; and
+/// the number of nodes of the mesh.
 fn solve(sensor: &Sensor, element: Element, n: usize) -> Result<([f64; 3], usize)> {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let mesh = bricks::block(
@@ -34,7 +35,7 @@ fn solve(sensor: &Sensor, element: Element, n: usize) -> Result<([f64; 3], usize
     let ball = BALL.signed_distance_field(&Surfaces::new())?;
     let pose = Pose::from_position(DVec3::new(PLACE_MM[0], PLACE_MM[1], high.z - DEPTH_MM));
     let mut found = [0.0; 3];
-    // Once more in place, so that nothing penetrates that the force depends on.
+    // The second step at the same pose removes the penetration that would affect the force.
     for _ in 0..2 {
         found[0] = -body
             .advance(&mut state, ball.as_ref(), &pose, 0.0)?
@@ -85,13 +86,14 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         ));
         series.push(plots::line(name, which, errors));
     }
-    let labels = ["pressure cells over the height", "size of the error, %"];
+    let labels = ["pressure cells over the height", "magnitude of the error, %"];
     Ok(Outcome {
         done: format!(
-            "A ball of 12.5 mm is pressed {DEPTH_MM} mm into the gel of `phystac` (ν = 0.49, no shell), on meshes of {} to {} nodes whose \
-             cells are all alike. Errors are distances from what the 10-node tetrahedron gives on the finest mesh ({n_reference} nodes), and \
-             the observed order is the slope of a line through the logarithms of all errors over those of the cells' size. The force of a \
-             coarse mesh is right by chance where nodes come into contact at the right depth.",
+            "A ball with a radius of 12.5 mm is pressed {DEPTH_MM} mm into the gel of `phystac` (ν = 0.49, \
+             no shell), on meshes of {} to {} nodes with equal cells. Errors are differences from the \
+             result of the 10-node tetrahedron on the finest mesh ({n_reference} nodes). The observed order \
+             is the slope of a line through the logarithms of all errors over those of the cell size. The \
+             force on a coarse mesh is right by chance where nodes come into contact at the right depth.",
             all[0].1,
             all[all.len() - 1].1
         ),
@@ -104,7 +106,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-/// With which power of the cells' size errors fall: the slope of a line, by least squares, through their logarithms.
+/// Order of convergence: the slope of errors over cell size on logarithmic axes, by least squares.
 fn order(errors: &[[f64; 2]]) -> f64 {
     let logarithms = || errors.iter().map(|[n, error]| [n.ln(), error.max(1e-12).ln()]);
     let mean = |of: usize| logarithms().map(|point| point[of]).sum::<f64>() / errors.len() as f64;

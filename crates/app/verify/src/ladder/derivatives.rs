@@ -1,4 +1,4 @@
-//! Derivatives against differences, and rotations.
+//! Derivatives against finite differences, and rigid rotations.
 
 use anyhow::{Context, Result};
 use glam::{DMat3, DVec3};
@@ -10,10 +10,11 @@ use super::patch_test::{ELEMENTS, TIGHT, body_of, deform, irregular_block, linea
 use super::rubbers::rubbers;
 use crate::rung::{Effort, Figure, Outcome};
 
-/// Tolerance where there is no load: relative to that of a light touch, so that round-off is near.
+/// Tolerance without load, relative to the forces of a light touch, so that it is close to
+/// round-off.
 const UNLOADED: f64 = 1e-9;
 
-/// Parts that a turn is made in.
+/// Number of steps of one full rotation.
 const TURNS: u32 = 12;
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
@@ -71,10 +72,12 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     }
     Ok(Outcome {
         done: format!(
-            "At {n_tries} random states of an irregular mesh, far from equilibrium, and along random directions: the slope of the energy \
-             by differences of fourth order against the nodal forces, and that of the forces against the tangent of the linear system, \
-             pressures included. The tangent is assembled in single precision, of which 6e-8 is the smallest step. Then the boundary is \
-             turned by 90° in {TURNS} steps: neither pressure nor von Mises stress may appear anywhere."
+            "At {n_tries} random states of an irregular mesh, far from equilibrium, and along random \
+             directions, the slope of the energy is compared with the nodal forces, and the slope of the \
+             forces with the tangent of the linear system, pressures included. The slopes are differences \
+             of fourth order. The tangent is assembled in single precision, whose smallest relative step is \
+             6e-8. Then the boundary is rotated by 90° in {TURNS} steps: pressure and von Mises stress must \
+             stay zero everywhere."
         ),
         figures,
         plots: Vec::new(),

@@ -1,4 +1,4 @@
-//! A block that stands for a half-space: its sides and its bottom move as those of the half-space would.
+//! A block that represents a half-space: its sides and its bottom are moved as in the half-space.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use twintac_softbody::{SoftBody, State};
 /// Half of the block's width, and its height, in radii of the loaded disc.
 pub(crate) const SIZE: f64 = 8.0;
 
-/// Small strain, linear elasticity.
+/// A half-space with linear elasticity at small strain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HalfSpace {
     pub(crate) youngs_kpa: f64,
@@ -20,7 +20,8 @@ pub(crate) struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// The block below a disc, its top at z = 0, with this many edges along the disc's radius, down to a depth as well.
+    /// The block below a disc, with its top at z = 0 and this many edges along the disc's radius,
+    /// also in depth down to `fine_depth` radii.
     pub(crate) fn block(&self, edges: f64, fine_depth: f64) -> TetMesh {
         let radius_mm = self.radius_mm;
         let size_mm = SIZE * radius_mm;
@@ -39,8 +40,9 @@ impl HalfSpace {
         mesh
     }
 
-    /// Moves the sides and the bottom as a force on one point of the surface would, down along z (Boussinesq, 1885; Johnson, Contact
-    /// Mechanics, 1985, equation 3.18): what a load on a disc does at a distance `r` differs from that by `(radius/r)²`.
+    /// Moves the sides and the bottom as a vertical force at one point of the surface would
+    /// (Boussinesq, 1885; Johnson, Contact Mechanics, 1985, equation 3.18). The displacement of a
+    /// load on a disc differs from that, at a distance `r`, by the order of `(radius/r)²`.
     pub(crate) fn move_far(&self, body: &SoftBody, state: &mut State, force_n: f64) -> Result<()> {
         let mesh = body.mesh();
         let bonded = mesh.sets.bonded.iter();

@@ -1,4 +1,4 @@
-//! Hertz's contact of a ball.
+//! Contact of a ball with a half-space, against Hertz's solution.
 
 use anyhow::Result;
 use glam::DVec3;
@@ -12,10 +12,10 @@ const RADIUS_MM: f64 = 200.0;
 const DEPTH_MM: f64 = 0.5;
 const YOUNGS_KPA: f64 = 70.0;
 
-/// Steps in which contact forces are carried over, until nothing penetrates that the force depends on.
+/// Number of steps at the same pose, which remove the penetration that would affect the force.
 const HOLDS: u32 = 3;
 
-/// Largest error allowed, %.
+/// Largest accepted error, %.
 const LIMIT: f64 = 3.0;
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
@@ -30,7 +30,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
             errors.push([edges, error]);
             n_nodes = n_nodes.max(nodes);
         }
-        // Errors change their sign on the way, so that a coarse mesh may be right by chance.
+        // Errors change their sign during refinement, so a coarse mesh can be accurate by chance.
         let last = errors[errors.len() - 1][1];
         let largest = errors.iter().map(|[_, error]| error.abs()).fold(0.0, f64::max);
         let name = |what: &str| format!("ν = {poissons_ratio}: {what}");
@@ -56,14 +56,15 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     series.push(plots::dashes("limit", 5, range.map(|x| [x, LIMIT]).to_vec()));
     let labels = [
         "pressure edges along the contact radius",
-        "size of the error in force, %",
+        "magnitude of the error in force, %",
     ];
     Ok(Outcome {
         done: format!(
-            "A rigid ball of {RADIUS_MM} mm is pressed {DEPTH_MM} mm into a half-space, so that the contact radius is {:.2} of the \
-             ball's; the force by Hertz (1881) is `4/3 E/(1 - ν²) √R d^1.5`. The half-space is a block of {SIZE} contact radii to all \
-             sides whose sides and bottom are held where the half-space under that force would have them (Boussinesq), so that the block \
-             needs no correction for its size. Up to {n_nodes} nodes.",
+            "A rigid ball with a radius of {RADIUS_MM} mm is pressed {DEPTH_MM} mm into a half-space, so \
+             that the contact radius is {:.2} of the ball's; the force by Hertz (1881) is `4/3 E/(1 - ν²) \
+             √R d^1.5`. The half-space is a block that extends {SIZE} contact radii to all sides. Its sides \
+             and bottom are held at the displacements of the half-space under that force (Boussinesq), so \
+             that no correction for the size of the block is needed. Up to {n_nodes} nodes.",
             (DEPTH_MM / RADIUS_MM).sqrt()
         ),
         figures,
@@ -75,7 +76,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-/// Error in force, %, and nodes of the mesh.
+/// Error of the force, %, and number of nodes of the mesh.
 fn error_percent(poissons_ratio: f64, edges: f64) -> Result<(f64, usize)> {
     let half_space = HalfSpace {
         youngs_kpa: YOUNGS_KPA,

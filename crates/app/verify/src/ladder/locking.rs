@@ -1,4 +1,4 @@
-//! Bending of something that can't change its volume.
+//! Bending of a nearly incompressible body.
 
 use anyhow::{Context, Result};
 use glam::DVec3;
@@ -16,7 +16,8 @@ const LOAD_KPA: f64 = 0.6;
 const LENGTH_MM: f64 = 48.0;
 const THICKNESS_MM: f64 = 12.0;
 
-/// Cook's panel, `n` cells along each edge and half as many through its thickness: held at the left, 44 mm high, loaded at the right, 16 mm.
+/// Cook's membrane, with `n` cells along each edge and half as many through its thickness: fixed at
+/// the left, 44 mm high, loaded at the right, 16 mm high.
 fn panel(n: usize) -> TetMesh {
     let lines = bricks::even(0.0, 1.0, n);
     let mut mesh = bricks::block(&lines, &lines, &bricks::even(0.0, THICKNESS_MM, n.div_ceil(2)));
@@ -28,7 +29,7 @@ fn panel(n: usize) -> TetMesh {
     mesh
 }
 
-/// How far the upper right corner rises, mm, and the nodes of the mesh.
+/// Rise of the upper right corner, mm, and number of nodes of the mesh.
 fn rise_mm(element: Element, poissons_ratio: f64, n: usize) -> Result<(f64, usize)> {
     let settings = SolverSettings {
         element,
@@ -99,9 +100,10 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let labels = ["pressure cells along an edge", "error in the corner's rise, %"];
     Ok(Outcome {
         done: format!(
-            "Cook's tapered panel (1974), 48 mm long and {THICKNESS_MM} mm thick, is held at its left end and pulled up by {LOAD_KPA} kPa \
-             at its right one. The reference is the 10-node tetrahedron with {reference_cells} cells along an edge, {n_reference} nodes. \
-             An element that locks at ν = {NEARLY} would be much too stiff there and not at ν = 0.3."
+            "Cook's tapered panel (1974), 48 mm long and {THICKNESS_MM} mm thick, is held at its left end \
+             and pulled up by {LOAD_KPA} kPa at its right one. The reference is the 10-node tetrahedron \
+             with {reference_cells} cells along an edge, {n_reference} nodes. An element that locks would \
+             be much too stiff at ν = {NEARLY}, but not at ν = 0.3."
         ),
         figures,
         plots: vec![Plot {

@@ -1,4 +1,5 @@
-//! The verification ladder: rungs from what must be exact to what is only likely, each with numbers and what they have to be.
+//! The verification tests ("rungs" of a "ladder" in code): from what must be exact to what is only
+//! likely. Each has numbers with stated limits.
 
 mod balance;
 mod calibration;
@@ -26,7 +27,7 @@ use clap::Args;
 use crate::calculix;
 use crate::rung::{Effort, Rung, number};
 
-/// From the bottom to the top.
+/// All tests, in order.
 const RUNGS: &[Rung] = &[
     Rung {
         number: 1,
@@ -37,7 +38,7 @@ const RUNGS: &[Rung] = &[
     Rung {
         number: 2,
         name: "derivatives",
-        title: "Energy, forces and tangent belong together; a rotation is free of stress",
+        title: "Energy, forces and tangent are consistent; a rotation causes no stress",
         run: derivatives::run,
     },
     Rung {
@@ -67,13 +68,13 @@ const RUNGS: &[Rung] = &[
     Rung {
         number: 7,
         name: "balance",
-        title: "The indenter's force is that of board and shell",
+        title: "The indenter's force equals that of board and shell",
         run: balance::run,
     },
     Rung {
         number: 8,
         name: "calculix",
-        title: "Force and pressure at the taxels are those of CalculiX",
+        title: "Force and pressure at the taxels, compared with CalculiX",
         run: calculix::run,
     },
     Rung {
@@ -85,13 +86,13 @@ const RUNGS: &[Rung] = &[
     Rung {
         number: 10,
         name: "robustness",
-        title: "Random presses converge, or end in a typed error",
+        title: "Random presses converge or end in a typed error",
         run: robustness::run,
     },
     Rung {
         number: 11,
         name: "calibration",
-        title: "Known materials are found again in noisy forces",
+        title: "Known materials are recovered from noisy forces",
         run: calibration::run,
     },
     Rung {
@@ -102,26 +103,27 @@ const RUNGS: &[Rung] = &[
     },
 ];
 
-/// What is asked for.
+/// Command-line options.
 #[derive(Args)]
 pub(crate) struct Options {
-    /// Numbers or names of rungs; all if there are none
+    /// Numbers or names of verification tests; all if none is given
     rungs: Vec<String>,
-    /// Print one JSON line a rung instead of a table
+    /// Print one JSON line for each test instead of a table
     #[arg(long)]
     json: bool,
     /// Coarser meshes and fewer presses: about five minutes
     #[arg(long)]
     quick: bool,
-    /// Run CalculiX (Debian package calculix-ccx; up to an hour a case) on the cases of rung 8 whose names start so
+    /// Run CalculiX (Debian package calculix-ccx; up to an hour a case) on the cases of test 8
+    /// whose names start with this text
     #[arg(long, value_name = "CASE")]
     ccx: Option<String>,
-    /// Where the pages go
+    /// Folder to which the pages are written
     #[arg(long, default_value = "docs/verification")]
     folder: PathBuf,
 }
 
-/// Climbs the ladder; whether every rung holds.
+/// Runs the tests, and returns whether all limits hold.
 pub(crate) fn run(options: &Options) -> Result<bool> {
     let rungs = chosen(&options.rungs)?;
     if let Some(prefix) = &options.ccx {
@@ -137,7 +139,8 @@ pub(crate) fn run(options: &Options) -> Result<bool> {
     let mut all_hold = true;
     let mut out = std::io::stdout().lock();
     for rung in rungs {
-        let outcome = (rung.run)(effort).with_context(|| format!("rung {}, {}", rung.number, rung.name))?;
+        let outcome = (rung.run)(effort)
+            .with_context(|| format!("verification test {}, {}", rung.number, rung.name))?;
         all_hold &= outcome.holds();
         let record = page::write(&options.folder, rung, &outcome, effort)?;
         if options.json {
@@ -175,7 +178,10 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Rung>> {
                     .iter()
                     .map(|rung| format!("{} {}", rung.number, rung.name))
                     .collect();
-                bail!("there is no rung `{name}`; there are {}", known.join(", "))
+                bail!(
+                    "there is no verification test `{name}`; there are {}",
+                    known.join(", ")
+                )
             }
         })
         .collect()

@@ -1,4 +1,4 @@
-//! The pages that people read, and the records that programs do.
+//! The pages for people, and the records for programs.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::files::write_whole;
 use crate::rung::{Effort, Outcome, Rung, number};
 
-/// Writes a rung's page, plots and record, and returns the record.
+/// Writes a test's page, plots and record, and returns the record.
 pub(crate) fn write(folder: &Path, rung: &Rung, outcome: &Outcome, effort: Effort) -> Result<Value> {
     let is_quick = effort == Effort::Quick;
     let command = format!(
@@ -21,7 +21,11 @@ pub(crate) fn write(folder: &Path, rung: &Rung, outcome: &Outcome, effort: Effor
     let _ = writeln!(
         page,
         "Made by `{command}`{}.\n",
-        if is_quick { ": less than the full run" } else { "" }
+        if is_quick {
+            ", a smaller version of the test"
+        } else {
+            ""
+        }
     );
     let _ = writeln!(page, "{}\n", outcome.done);
     let _ = writeln!(page, "| figure | value | limit | holds |\n|---|---:|---:|---|");
@@ -58,7 +62,7 @@ pub(crate) fn write(folder: &Path, rung: &Rung, outcome: &Outcome, effort: Effor
     Ok(record)
 }
 
-/// Writes the table of all rungs that the folder has records of.
+/// Writes the table of all tests that have a record in the folder.
 pub(crate) fn write_index(folder: &Path) -> Result<()> {
     let mut records = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -73,10 +77,15 @@ pub(crate) fn write_index(folder: &Path) -> Result<()> {
     records.sort_by_key(|record| record["rung"].as_u64());
     let mut page = String::from(
         "# Verification\n\n\
-         What the soft body is checked against, from what must be exact to what is only likely. `cargo xtask verify` makes all of it anew \
-         and ends with an error where a limit does not hold; `cargo xtask verify hertz` does one rung, `--quick` a smaller version, \
-         `--json` prints records.\n\n\
-         | rung | what | figure | value | limit | holds | run |\n|---:|---|---|---:|---:|---|---|\n",
+         The soft-body solver is checked by a series of verification tests,\n\
+         from what must be exact to what is only likely.\n\
+         Each figure has a limit.\n\
+         The title of a test links to its page, with the setup, the reference and plots.\n\
+         The last column says whether the full test gave the figures, or a smaller version of it (`--quick`).\n\n\
+         `cargo xtask verify` runs all tests again, and ends with an error if a limit does not hold.\n\
+         `cargo xtask verify hertz` runs one test, `--quick` a smaller version, and `--json` prints records.\n\
+         [Results](../results/soft-body.md) explains the limits that do not hold.\n\n\
+         | test | title | figure | value | limit | holds | run |\n|---:|---|---|---:|---:|---|---|\n",
     );
     for record in &records {
         let text = |name: &str| record[name].as_str().unwrap_or_default().to_owned();

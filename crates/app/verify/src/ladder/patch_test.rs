@@ -1,4 +1,4 @@
-//! The patch test: what is linear on the boundary is linear inside.
+//! The patch test: a linear displacement of the boundary gives the same linear displacement inside.
 
 use anyhow::Result;
 use glam::{DMat3, DVec3};
@@ -10,19 +10,19 @@ use twintac_softbody::{Element, Frame, Material, SoftBody, SolverSettings, State
 use super::rubbers::rubbers;
 use crate::rung::{Effort, Figure, Outcome};
 
-/// Both elements.
+/// Both kinds of elements.
 pub(crate) const ELEMENTS: [(&str, Element); 2] = [
     ("composite", Element::Composite),
     ("quadratic", Element::Quadratic),
 ];
 
-/// Near round-off.
+/// Tolerance near round-off.
 pub(crate) const TIGHT: f64 = 1e-12;
 
-/// Part of a cell's size by which inner nodes are moved at random, to either side.
+/// Largest random displacement of inner nodes, as a fraction of a cell's size.
 const SHAKEN: f64 = 0.15;
 
-/// A block of 3 × 2 × 2.5 mm whose inner nodes are anywhere.
+/// A block of 3 × 2 × 2.5 mm with randomly displaced inner nodes.
 pub(crate) fn irregular_block(cells: [usize; 3]) -> TetMesh {
     let size = DVec3::new(3.0, 2.0, 2.5);
     let [x, y, z] = [0, 1, 2].map(|axis| bricks::even(0.0, size[axis], cells[axis]));
@@ -39,7 +39,7 @@ pub(crate) fn irregular_block(cells: [usize; 3]) -> TetMesh {
     mesh
 }
 
-/// A soft body to be solved to a tolerance.
+/// A soft body with a solver tolerance.
 pub(crate) fn body_of(
     mesh: &TetMesh,
     material: Material,
@@ -54,7 +54,7 @@ pub(crate) fn body_of(
     Ok(SoftBody::new(mesh, material, settings)?)
 }
 
-/// Moves the boundary as a deformation gradient says.
+/// Moves the boundary by a deformation gradient.
 pub(crate) fn deform(body: &SoftBody, state: &mut State, gradient: DMat3) -> Result<Frame> {
     let moved: Vec<DVec3> = linear(body, gradient, &body.mesh().sets.bonded);
     Ok(body.advance_prescribed(state, &moved, 0.0)?)
@@ -100,9 +100,10 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     }
     Ok(Outcome {
         done: format!(
-            "The boundary of a block of 3 × 2 × 2.5 mm, {n_nodes} nodes, those inside moved at random by up to {} % of a cell, is moved \
-             by a linear field with stretches, shears and a change of volume of {:.1} %. Inside, displacements must be that field and \
-             pressures one value: the largest errors of all nodes.",
+            "A block of 3 × 2 × 2.5 mm has {n_nodes} nodes; its inner nodes are displaced at random by up \
+             to {} % of a cell. Its boundary is displaced by a linear field with stretches, shears and a \
+             change of volume of {:.1} %. Inside, displacements must equal that field, and all pressures \
+             must have one value. The figures are the largest errors of all nodes.",
             100.0 * SHAKEN,
             100.0 * (gradient.determinant() - 1.0)
         ),

@@ -15,22 +15,23 @@ use super::thin;
 /// Largest angle between the indenter's axis and the gel's normal, radians.
 const MAX_TILT_RAD: f64 = 0.35;
 
-/// Part of the gel's height that presses reach into.
+/// Smallest and largest depth as fractions of the gel's height.
 const DEPTHS: [f64; 2] = [0.1, 0.7];
 
-/// Part of the gel's height that presses with thin bodies reach into at most.
+/// Largest depth of presses with thin bodies, as a fraction of the gel's height.
 const THIN_DEPTH: f64 = 0.35;
 
 /// Force that ends a press, N.
 pub(crate) const ENOUGH_N: f64 = 200.0;
 
-/// A press to try.
+/// A random press.
 pub(crate) struct RandomPress {
     pub(crate) place: PressPlace,
     pub(crate) indenter: Box<dyn SignedDistance>,
 }
 
-/// The press of an index; the same whatever was drawn before. Half of them with the sensor's indenters.
+/// The press of an index, independent of other draws. Half of the presses use the sensor's
+/// indenters.
 pub(crate) fn draw(sensor: &Sensor, seed: u64, index: u64) -> Result<RandomPress> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(index);
@@ -61,7 +62,7 @@ pub(crate) fn draw(sensor: &Sensor, seed: u64, index: u64) -> Result<RandomPress
     Ok(RandomPress { place, indenter })
 }
 
-/// The press of an index with a body that is thin, hollow, sharp or made of several.
+/// The press of an index with a body that is thin, hollow, sharp or made of several parts.
 pub(crate) fn draw_thin(sensor: &Sensor, seed: u64, index: u64) -> Result<RandomPress> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(index);
@@ -82,7 +83,7 @@ pub(crate) fn draw_thin(sensor: &Sensor, seed: u64, index: u64) -> Result<Random
     Ok(RandomPress { place, indenter })
 }
 
-/// A random tilt and spin.
+/// A random tilt and yaw.
 fn turn(random: &mut ChaCha8Rng) -> DQuat {
     let tilt_about = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
     let tilt = DQuat::from_axis_angle(tilt_about, random.random_range(0.0..MAX_TILT_RAD));
@@ -90,7 +91,8 @@ fn turn(random: &mut ChaCha8Rng) -> DQuat {
     (tilt * spin).normalize()
 }
 
-/// A sphere, cylinder, box or cone of random size and rounding. The shape that stands for a cone where meshes are made is a sphere.
+/// A sphere, cylinder, box or cone of random size and rounding. For the mesh, a sphere stands for a
+/// cone.
 fn invent(random: &mut ChaCha8Rng, depth_mm: f64) -> (String, Shape, Option<Cone>) {
     let height_mm = 12.0;
     match random.random_range(0..4) {
@@ -125,12 +127,12 @@ fn invent(random: &mut ChaCha8Rng, depth_mm: f64) -> (String, Shape, Option<Cone
     }
 }
 
-/// A cone that stands on its rounded tip and ends in a sphere that its side runs into.
+/// A cone with its rounded tip down. Its side ends tangentially in a second sphere.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cone {
     tip_mm: f64,
     end_mm: f64,
-    /// From the tip's centre to that of the other sphere.
+    /// Distance of the two spheres' centres, mm.
     length_mm: f64,
     /// Half of the opening angle, radians.
     half_angle: f64,
@@ -147,7 +149,7 @@ impl Cone {
         }
     }
 
-    /// About how wide it is at a height above its lowest point.
+    /// Approximate radius at a height above its lowest point.
     fn radius_mm(&self, height_mm: f64) -> f64 {
         let past_mm = height_mm - self.tip_mm * (1.0 - self.half_angle.sin());
         self.tip_mm * self.half_angle.cos() + past_mm.max(0.0) * self.half_angle.tan()
@@ -160,7 +162,7 @@ impl SignedDistance for Cone {
         let outwards = at.truncate().normalize_or(DVec2::X);
         let plane = DVec2::new(at.truncate().length(), at.z);
         let (sine, cosine) = self.half_angle.sin_cos();
-        // Along the side, up from where the tip's sphere touches it.
+        // Position along the side, from where the tip's sphere touches it.
         let along = plane.dot(DVec2::new(sine, cosine));
         let round = |centre: DVec2, radius_mm: f64| {
             let way = plane - centre;

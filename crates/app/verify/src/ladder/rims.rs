@@ -1,4 +1,4 @@
-//! Shapes with rims on meshes that are pressed in real time, beside a finer mesh.
+//! Shapes with rims on real-time meshes, against finer meshes.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,14 +12,15 @@ use twintac_simulate::{FollowedFrame, Gel, SimulateSettings};
 
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
-/// Beside the middle, where gel meets the shell's wall, mm.
+/// Location of the presses, mm: off the middle, where gel meets the shell's wall.
 const PLACE_MM: [f64; 2] = [9.0, 3.0];
 const DEEPEST_MM: f64 = 2.0;
-/// Frames on the way down.
+/// Number of frames on the way down.
 const N_FRAMES: usize = 20;
 /// Depths at which forces and pressures are compared, mm.
 const DEPTHS_MM: [f64; 3] = [0.5, 1.0, 2.0];
-/// Nodes that a path may have before the mesh is refined at rims: together about 7,000 and 33,000.
+/// Most nodes of a path's mesh before it is refined at rims. The refined meshes have about 7,000
+/// and 33,000.
 const PATH_NODES: [usize; 2] = [4_500, 22_000];
 
 /// The shapes that are pressed.
@@ -59,7 +60,7 @@ fn shapes() -> [(&'static str, Shape); 5] {
     ]
 }
 
-/// The frames of a press on meshes that are about so fine, and the nodes of the mesh.
+/// The frames of a press on the real-time or the finer mesh, and the number of nodes.
 fn press(sensor: &Arc<Sensor>, shape: &Shape, finer: bool) -> Result<(Vec<FollowedFrame>, usize)> {
     let fine = SimulateSettings::fine();
     let settings = if finer {
@@ -149,8 +150,9 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     );
     Ok(Outcome {
         done: format!(
-            "Bodies with rims of 0.3 mm go down at ({}, {}) mm in {N_FRAMES} frames to {DEEPEST_MM} mm, once on a mesh of {} nodes, such as is pressed in real time, and once on one of {}. No friction. \
-             The finer mesh is not exact either.\n",
+            "Bodies with rims of 0.3 mm are pressed at ({}, {}) mm in {N_FRAMES} frames to {DEEPEST_MM} mm, \
+             without friction: once on a mesh of {} nodes, as it is pressed in real time, and once on a \
+             mesh of {} nodes. The finer mesh is not exact either.\n",
             PLACE_MM[0], PLACE_MM[1], n_nodes[0], n_nodes[1]
         ),
         figures,

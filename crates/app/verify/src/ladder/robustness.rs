@@ -1,4 +1,4 @@
-//! Random presses, each of which has to converge or say why not, and never to lie.
+//! Random presses. Each has to converge, or to end in a typed error; none may return a wrong state.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -18,61 +18,64 @@ use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const SEED: u64 = 10;
 
-/// Longest way between two frames, mm.
+/// Largest motion between two frames, mm.
 const STEP_MM: f64 = 0.4;
 
-/// Part of the indenter's force that may be missing in the balance of a frame: what the solver's tolerance leaves, many times over.
+/// Largest accepted imbalance of a frame, relative to the indenter's force: many times the solver's
+/// tolerance.
 const UNBALANCED: f64 = 0.01;
 
-/// A force below which presses are not compared, N.
+/// Presses with smaller forces are not compared, N.
 const LEAST_N: f64 = 0.1;
 
 /// Presses of one kind, on one kind of mesh.
 struct Set {
     name: &'static str,
     settings: SimulateSettings,
-    /// Of the mesh that judges presses whose force falls.
+    /// Settings of the finer mesh that decides about presses whose force falls.
     finer: SimulateSettings,
     draw: fn(&Sensor, u64, u64) -> Result<RandomPress>,
     n_presses: u64,
-    /// How many of them are solved on a finer mesh as well.
+    /// Number of presses that are also solved on a finer mesh for comparison.
     n_compared: u64,
-    /// Part that has to arrive, to meet something rigid, or to end where its force falls, %.
+    /// Smallest accepted percentage of presses that reach their depth, meet something rigid, or end
+    /// where their force falls.
     least_solved_percent: f64,
-    /// Part whose force may fall where that on a finer mesh does not, %.
+    /// Largest accepted percentage of presses whose force falls although that on a finer mesh does
+    /// not.
     most_fell_percent: f64,
 }
 
 /// How a press ended.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
-    /// At its depth, or at enough force.
+    /// At its depth, or at a force that is large enough.
     Converged,
-    /// Where the indenter met the shell or the board, which bear any load.
+    /// The indenter met the shell or the board, which bear any load.
     Stopped,
-    /// Where the force fell as the depth rose, on a finer mesh too: it slid off the gel.
+    /// The force fell as the depth increased, on a finer mesh too: the indenter slid off the gel.
     SlidOff,
-    /// Where the force fell as the depth rose, on this mesh alone.
+    /// The force fell as the depth increased, on this mesh alone.
     Fell,
-    /// In a typed error that left the last good state.
+    /// With a typed error; the last good state is kept.
     Failed(&'static str),
-    /// In something that no solver may return.
+    /// With a result that no solver may return.
     Wrong(&'static str),
 }
 
 impl End {
-    /// Whether what came is what the drawn press does, as far as the mesh tells it.
+    /// Whether the press ended as expected, as far as the mesh shows.
     fn is_well(&self) -> bool {
         matches!(self, Self::Converged | Self::Stopped | Self::SlidOff)
     }
 
-    /// Whether the solver found all that it was asked for.
+    /// Whether the solver found all requested equilibria.
     fn is_solved(&self) -> bool {
         self.is_well() || *self == Self::Fell
     }
 }
 
-/// What came of a press.
+/// The result of a press.
 struct Pressed {
     index: u64,
     indenter: String,
@@ -80,7 +83,7 @@ struct Pressed {
     wanted_mm: f64,
     depth_mm: f64,
     force_n: f64,
-    /// Along the press, N, a force for each frame.
+    /// Forces of all frames, N.
     forces_n: Vec<f64>,
     /// Newton iterations of each frame.
     iterations: Vec<u32>,
@@ -89,6 +92,7 @@ struct Pressed {
     error: String,
 }
 
+// long: each figure of the record in its turn
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let sensor = Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?;
     let bare = Sensor {
@@ -156,12 +160,19 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let mut figures = Vec::new();
     let mut histograms = Histograms::default();
     let mut done = format!(
-        "Every other press is on the sensor in its shell, the others on its gel alone. Half of the presses take an indenter of the sensor, half an invented sphere, cylinder, box or cone with rounded edges; each \
-         stands anywhere above the gel, tilted by up to 20°, and goes on from first touch in frames of at most {STEP_MM} mm to a depth \
-         of 10 to 70 % of the gel's thickness, to {ENOUGH_N} N, or to where it meets the shell or the board. A frame counts as wrong, whatever the solver says, if a number is not \
-         finite, a tetrahedron is inside out, a node is too deep inside a shape, or the forces do not balance within {} %; so does an error after which the state is not the one before. A press ends where its force falls by more than {:.0} % as the depth \
-         rises, as a table does; it counts as slid off the gel if a finer mesh has it end so too, else as failed. Thin bodies are plates, rings, blades and pins of 0.2 to 3 mm, wedges, cups, brackets and crosses of several bodies, pressed to a third \
-         of the thickness at most; those that are too thin for the mesh have to end in an error that says so. Seed {SEED}.\n",
+        "Every other press is on the sensor with its shell, the others on its gel alone. Half of the \
+         presses use an indenter of the sensor, the other half a random sphere, cylinder, box or cone with \
+         rounded edges. Each indenter starts anywhere above the gel, tilted by up to 20°, and moves from \
+         first touch in frames of at most {STEP_MM} mm to a depth of 10 to 70 % of the gel's thickness, to \
+         {ENOUGH_N} N, or until it meets the shell or the board. A frame counts as wrong, whatever the \
+         solver reports, if a number is not finite, a tetrahedron is inside out, a node is too deep inside \
+         a shape, or the forces do not balance within {} %. An error after which the state differs from the \
+         state before it counts as wrong, too. A press ends where its force falls by more than {:.0} % \
+         while the depth increases, as a table over depth does; it counts as slid off the gel if it ends in \
+         the same way on a finer mesh, otherwise as failed. Thin bodies are plates, rings, blades and pins \
+         of 0.2 to 3 mm, wedges, cups, brackets and crosses of several bodies, pressed to a third of the \
+         thickness at most; those that are too thin for the mesh must end in an error that says so. Seed \
+         {SEED}.\n",
         100.0 * UNBALANCED,
         100.0 * (1.0 - FORCE_MAY_FALL_TO)
     );
@@ -190,7 +201,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-/// How many presses of a set ended how.
+/// Numbers of presses of a set by how they ended.
 fn figures_of(set: &Set, all: &[Pressed]) -> Vec<Figure> {
     let name = set.name;
     let percent_of = |is_it: &dyn Fn(&End) -> bool| {
@@ -229,7 +240,7 @@ fn figures_of(set: &Set, all: &[Pressed]) -> Vec<Figure> {
     figures
 }
 
-/// How far forces are from those on a finer mesh, at the last depth that both reach.
+/// Differences of forces from those on a finer mesh, at the last depth that both reach.
 fn differences(set: &Set, all: &[Pressed], finer: &[Pressed]) -> Vec<Figure> {
     let difference = |(coarse, fine): (&Pressed, &Pressed)| {
         let frame = coarse.forces_n.len().min(fine.forces_n.len()).checked_sub(1)?;
@@ -253,7 +264,7 @@ fn differences(set: &Set, all: &[Pressed], finer: &[Pressed]) -> Vec<Figure> {
     ]
 }
 
-/// Histograms, a line for each set of presses.
+/// Histograms, with a line for each set of presses.
 #[derive(Default)]
 struct Histograms {
     iterations: Vec<Series>,
@@ -277,14 +288,14 @@ impl Histograms {
         let plot = |name, title, x_label, caption: &str, series| Plot {
             name,
             caption: caption.into(),
-            scene: plots::lines(title, [x_label, "how many"], true, series),
+            scene: plots::lines(title, [x_label, "number"], true, series),
         };
         vec![
             plot(
                 "iterations",
                 "Newton iterations of a frame",
-                "iterations, the last bin and more",
-                "Every frame of every press.",
+                "iterations; the last bin includes more",
+                "All frames of all presses.",
                 self.iterations,
             ),
             plot(
@@ -298,7 +309,7 @@ impl Histograms {
                 "depth",
                 "Depth reached",
                 "depth, mm",
-                "Where presses ended: at the depth drawn, at 200 N, or in an error.",
+                "Depths at which presses ended: at their random depth, at 200 N, or with an error.",
                 self.depths,
             ),
         ]
@@ -440,7 +451,7 @@ fn kind(error: &SolveError) -> &'static str {
     }
 }
 
-/// The smallest volume ratio, worked out from the displacements anew; or what is wrong with a frame.
+/// The smallest volume ratio, recomputed from the displacements; or what is wrong with a frame.
 fn check(body: &SoftBody, state: &State, frame: &Frame) -> Result<f64, &'static str> {
     let rest = body.mesh();
     let mut now = rest.clone();
@@ -473,7 +484,7 @@ fn check(body: &SoftBody, state: &State, frame: &Frame) -> Result<f64, &'static 
     Ok(smallest)
 }
 
-/// The first presses that did not converge, as a list.
+/// A list of the first presses that did not converge.
 fn failures(set: &str, all: &[Pressed]) -> String {
     let failed: Vec<&Pressed> = all.iter().filter(|press| !press.end.is_well()).collect();
     let mut text = String::new();

@@ -1,4 +1,5 @@
-//! Every law that the soft body knows, with its energy written a second time, as a function of the principal stretches.
+//! Every material law of the soft body, with its energy written independently as a function of the
+//! principal stretches.
 
 use glam::DVec3;
 use twintac_material::{
@@ -6,23 +7,24 @@ use twintac_material::{
     Yeoh,
 };
 
-/// Bulk modulus of all of them, kPa: 50 times the shear modulus.
+/// Bulk modulus of all laws, kPa: 50 times the shear modulus.
 const BULK_KPA: f64 = 1200.0;
 
-/// The shear modulus of those that have one constant, kPa.
+/// Shear modulus of the laws with one constant, kPa.
 const SHEAR_KPA: f64 = 23.5;
 
 /// Terms of an Ogden series: modulus, kPa, and exponent.
 const TERMS: [(f64, f64); 3] = [(9.0, 1.3), (0.6, 4.5), (-3.0, -2.0)];
 
-/// A law and its energy per reference volume, kPa, in the principal stretches; that of the mean volume change comes on top.
+/// A law and its energy per reference volume, kPa, in the principal stretches. The energy of the
+/// mean volume change is added to it.
 pub(crate) struct Rubber {
     pub(crate) name: &'static str,
     pub(crate) law: Model,
     energy_kpa: fn(DVec3) -> f64,
 }
 
-/// Every law.
+/// All laws.
 pub(crate) fn rubbers() -> Vec<Rubber> {
     let terms = TERMS.map(|(mu_kpa, alpha)| OgdenTerm { mu_kpa, alpha });
     vec![
@@ -43,7 +45,7 @@ pub(crate) fn rubbers() -> Vec<Rubber> {
             .into(),
             energy_kpa: |stretches| {
                 let squares = isochoric(stretches);
-                // Of a change of shape the product of the squares is 1.
+                // For an isochoric deformation the product of the squares is 1.
                 8.0 * (squares.element_sum() - 3.0) + 3.5 * (squares.recip().element_sum() - 3.0)
             },
         },
@@ -99,7 +101,7 @@ pub(crate) fn rubbers() -> Vec<Rubber> {
     ]
 }
 
-/// Squares of the principal stretches without the change of volume.
+/// Squares of the isochoric principal stretches.
 fn isochoric(stretches: DVec3) -> DVec3 {
     stretches * stretches / stretches.element_product().cbrt().powi(2)
 }
@@ -119,7 +121,8 @@ impl Rubber {
         (self.energy_kpa)(stretches) + 0.5 * self.material().volume_modulus_kpa() * change * change
     }
 
-    /// First Piola–Kirchhoff stress, kPa: the slopes `∂W/∂λ_i` by differences of sixth order, good to ten digits.
+    /// First Piola–Kirchhoff stress, kPa: the derivatives `∂W/∂λ_i` by differences of sixth order,
+    /// accurate to ten digits.
     pub(crate) fn principal_stress_kpa(&self, stretches: DVec3) -> DVec3 {
         const STEP: f64 = 1e-3;
         let slope = |axis: DVec3| {
@@ -135,7 +138,8 @@ impl Rubber {
         -self.principal_stress_kpa(stretches).dot(stretches) / (3.0 * stretches.element_product())
     }
 
-    /// The stretches of a block pulled along x to `stretch` and, if `is_equibiaxial`, along y as well, while the other sides are free.
+    /// The stretches of a block that is pulled along x to `stretch` and, if `is_equibiaxial`, along
+    /// y as well, while its other sides are free.
     pub(crate) fn free_stretches(&self, stretch: f64, is_equibiaxial: bool) -> DVec3 {
         let at = |free: f64| DVec3::new(stretch, if is_equibiaxial { stretch } else { free }, free);
         let (mut low, mut high) = (0.2, 3.0);

@@ -1,4 +1,4 @@
-//! Pressure below a loaded disc.
+//! Pressure below a uniformly loaded disc.
 
 use std::f64::consts::PI;
 
@@ -12,13 +12,13 @@ use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 const RADIUS_MM: f64 = 10.0;
 const YOUNGS_KPA: f64 = 70.0;
 
-/// Small, so that strains are.
+/// A small load, so that strains are small.
 const LOAD_KPA: f64 = 0.001 * YOUNGS_KPA;
 
-/// Depths, in radii, between which pressures are compared.
+/// Range of depths in which pressures are compared, in radii.
 const DEPTHS: [f64; 2] = [0.25, 2.5];
 
-/// Depth, in radii, to which the mesh is fine.
+/// Depth to which the mesh is fine, in radii.
 const FINE_DEPTH: f64 = 2.0;
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
@@ -50,12 +50,14 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let labels = ["depth over radius", "pressure over load"];
     Ok(Outcome {
         done: format!(
-            "A disc of {RADIUS_MM} mm on a half-space is loaded evenly with a thousandth of Young's modulus. On its axis the pressure \
-             `-tr(σ)/3` is `2(1 + ν)/3 p (1 - z/√(z² + a²))` at the depth `z` (the integral of a point load's, Johnson, Contact Mechanics, \
-             1985, section 3.2, over the disc). The half-space is a block of {SIZE} radii whose sides and bottom are held where a point \
-             load of the same force would have them; {n_nodes} nodes, {edges} pressure edges along the radius. Errors, in parts of the \
-             closed form at the same depth, at all nodes between {} and {} radii deep; what is nearer to the surface sees that the edge \
-             of the disc cuts through triangles.",
+            "A disc with a radius of {RADIUS_MM} mm on a half-space has a uniform load of a thousandth of \
+             Young's modulus. On its axis the pressure `-tr(σ)/3` is `2(1 + ν)/3 p (1 - z/√(z² + a²))` at \
+             the depth `z` (the solution for a point load, Johnson, Contact Mechanics, 1985, section 3.2, \
+             integrated over the disc). The half-space is a block of {SIZE} radii whose sides and bottom \
+             are held at the displacements that a point load of the same force causes; {n_nodes} nodes, \
+             {edges} pressure edges along the radius. Errors are relative to the closed form at the same \
+             depth, at all nodes between {} and {} radii deep; nearer to the surface, the pressure is \
+             affected by the edge of the disc, which cuts through triangles.",
             DEPTHS[0], DEPTHS[1]
         ),
         figures,
@@ -67,12 +69,13 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-/// Pressure over load, at depths in radii.
+/// Pressure divided by load, at a depth in radii.
 fn closed_form(poissons_ratio: f64, depth: f64) -> f64 {
     2.0 * (1.0 + poissons_ratio) / 3.0 * (1.0 - depth / depth.hypot(1.0))
 }
 
-/// What [`closed_form`] says, at the nodes on the axis from the top down, and the nodes of the mesh.
+/// The simulated values of [`closed_form`] at the nodes on the axis from the top down, and the
+/// number of nodes of the mesh.
 fn pressures(poissons_ratio: f64, edges: f64) -> Result<(Vec<[f64; 2]>, usize)> {
     let half_space = HalfSpace {
         youngs_kpa: YOUNGS_KPA,

@@ -1,4 +1,4 @@
-//! Random bodies that are thin, hollow, sharp or made of several.
+//! Random bodies that are thin, hollow, sharp or made of several parts.
 
 use glam::{DQuat, DVec3};
 use rand::Rng;

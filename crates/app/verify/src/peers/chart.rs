@@ -1,19 +1,20 @@
-//! Force error against real-time factor.
+//! The chart of force error over real-time factor.
 
 use twintac_plot::{Anchor, Ink, SMALL, Scene, text_width};
 
 use super::row::Row;
 
-/// Height of the picture, px; its width follows from the legend's.
+/// Height of the picture, px. Its width follows from the legend's.
 const HEIGHT: f64 = 400.0;
-/// The box: left, top, right, bottom, px.
+/// The plot's frame: left, top, right, bottom, px.
 const BOX: [f64; 4] = [56.0, 40.0, 470.0, 350.0];
-/// Decades of the real-time factor.
+/// Range of the real-time factor, as powers of ten.
 const DECADES: [i32; 2] = [-4, 1];
-/// Decades of the error, %.
+/// Range of the error, %, as powers of ten.
 const ERROR_DECADES: [i32; 2] = [-1, 2];
 
-/// Every run that gave figures: the largest force error over its depths, against its rate.
+/// The chart of all runs that gave figures: the largest force error over the depths, over the
+/// real-time factor.
 pub(super) fn scene(rows: &[Row]) -> Scene {
     let [left, top, right, bottom] = BOX;
     let entries = legend(rows);
@@ -69,7 +70,7 @@ pub(super) fn scene(rows: &[Row]) -> Scene {
         let number = entries.iter().position(|entry| *entry == name(row));
         let ink = ink(number.unwrap_or(0));
         let at = [x(figures.rtf), y(percent)];
-        // A press that was cut short has been judged on less.
+        // A press that was cut was evaluated at fewer depths.
         if row.is_cut() {
             scene.ring(at, 4.0, ink, None);
         } else {
@@ -103,12 +104,12 @@ fn name(row: &Row) -> String {
     format!("{}, {}", row.engine, row.setting)
 }
 
-/// The first entry is ours; the others have a palette of six.
+/// The colour of an engine. The first one is this project's; the others have a palette of six.
 fn ink(number: usize) -> Ink {
     number.checked_sub(1).map_or(Ink::Text, Ink::Series)
 }
 
-/// Where a value lies between decades, 0 to 1; what lies outside sits on the edge.
+/// Relative position of a value between powers of ten, 0 to 1. Values outside are put on the edge.
 fn part(value: f64, decades: [i32; 2]) -> f64 {
     let [low, high] = decades.map(f64::from);
     ((value.log10() - low) / (high - low)).clamp(0.0, 1.0)

@@ -1,6 +1,7 @@
-//! The same press on other engines, in one go: `cargo xtask bench peers`.
+//! The same press on other engines, in one run: `cargo xtask bench peers`.
 //!
-//! Each run is a process of its own that prints one row of figures; what fails or takes too long is a row that says so.
+//! Each press runs in a process of its own, which prints one row of figures. A press that fails or
+//! takes too long becomes a row that says so.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -25,13 +26,13 @@ use row::Row;
 
 pub(crate) use ours::print_row;
 
-/// Where the results go.
+/// Folder of the results.
 const RESULTS: &str = "docs/benchmarks";
 
-/// What the runs leave behind and find again: the virtual environment, compiled kernels, meshes and logs.
+/// Working folder, kept between runs: the virtual environment, compiled kernels, meshes and logs.
 const WORK: &str = "target/peers";
 
-/// What to leave out where time is short.
+/// Command-line options.
 #[derive(clap::Args)]
 pub(crate) struct Options {
     /// Poisson's ratios of the block
@@ -40,10 +41,10 @@ pub(crate) struct Options {
     /// Processor time after which a press of another engine is cut, s
     #[arg(long, default_value_t = 60.0)]
     limit_s: f64,
-    /// Use the kernels that an earlier call compiled; how long a first start takes is not stated then
+    /// Use the kernels that an earlier run compiled; the time of a first start is then not measured
     #[arg(long)]
     keep_kernels: bool,
-    /// Measure nothing: write the page and the chart of the figures that are there
+    /// Measure nothing: write the page and the chart of the existing figures
     #[arg(long)]
     rewrite: bool,
 }
@@ -59,7 +60,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let work = Path::new(WORK);
     fs::create_dir_all(work).with_context(|| format!("creating {WORK}"))?;
     let plan = Plan::read()?;
-    let mesh_file = Path::new("mesh.json"); // engines run in that folder
+    let mesh_file = Path::new("mesh.json"); // engines run in the working folder
     write_whole(
         &work.join(mesh_file),
         cases::block(plan::RATIOS[0])?.mesh_json()?.as_bytes(),
@@ -87,7 +88,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
                 Err(error) => Row::failed(&run, &format!("{error:#}")),
             });
         }
-        // Whoever stops this early keeps the engines that are done.
+        // After an early stop, the results of the finished engines are kept.
         write_results(&Results {
             conditions: process::conditions(options.limit_s),
             rows: rows.clone(),

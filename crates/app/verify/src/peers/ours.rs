@@ -8,10 +8,10 @@ use anyhow::{Context, Result};
 use super::row::Figures;
 use crate::{bench, cases, files};
 
-/// Clock ticks a second in `/proc`: fixed on Linux, whatever the kernel's own rate (proc(5)).
+/// Clock ticks per second in `/proc`: fixed on Linux, whatever the kernel's own rate (proc(5)).
 const TICKS_PER_S: f64 = 100.0;
 
-/// Presses the block and prints what came of it as one JSON line.
+/// Presses the block, and prints the result as one JSON line.
 pub(crate) fn print_row(poissons_ratio: f64) -> Result<()> {
     let started = Instant::now();
     let case = cases::block(poissons_ratio)?;
@@ -22,7 +22,7 @@ pub(crate) fn print_row(poissons_ratio: f64) -> Result<()> {
         first.get_or_insert((started.elapsed().as_secs_f64(), last_s));
     })?;
     let (start_up_s, first_s) = first.context("no frame was solved")?;
-    // The frame at first touch, with no depth, counts as start-up, as it does for the other engines.
+    // The frame at first contact, without depth, counts as start-up, as for the other engines.
     let frames = &followed.frames;
     let (rest, end) = (
         frames.first().context("no frames")?,
@@ -47,7 +47,8 @@ pub(crate) fn print_row(poissons_ratio: f64) -> Result<()> {
 /// Processor time of this process, s.
 fn processor_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // Counted from behind the name, which may hold spaces: utime and stime are fields 14 and 15 (proc(5)).
+    // Fields are counted after the name, which may contain spaces: utime and stime are fields 14
+    // and 15 (proc(5)).
     let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks: f64 = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
     Some(ticks / TICKS_PER_S)

@@ -8,7 +8,7 @@ use super::plan::RATIOS;
 use super::process::Conditions;
 use super::row::Row;
 
-/// What the page says around the tables.
+/// The text of the page around the tables.
 const TEXT: &str = include_str!("../../peers/page.md");
 
 const HEADER: &str = "\
@@ -16,7 +16,7 @@ const HEADER: &str = "\
 |---|---|---|---|---|---|---|---|---|---|
 ";
 
-/// The page, with the tables where its text wants them.
+/// The page, with the tables at the placeholders of its text.
 pub(super) fn markdown(Results { conditions, rows }: &Results) -> String {
     let mut tables = String::new();
     for ratio in RATIOS {
@@ -42,7 +42,7 @@ pub(super) fn markdown(Results { conditions, rows }: &Results) -> String {
         .replace("{settings}", settings(rows).trim_end())
 }
 
-/// The page's figures, all digits.
+/// The page's figures, with all digits.
 #[derive(Deserialize, Serialize)]
 pub(super) struct Results {
     pub(super) conditions: Conditions,
@@ -86,13 +86,13 @@ fn line(row: &Row) -> String {
     )
 }
 
-/// Two or three digits that mean something.
+/// A number with two or three significant digits.
 fn significant(value: f64) -> String {
     let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 5.0) as usize;
     format!("{value:.decimals$}")
 }
 
-/// What each setting was told, once.
+/// The parameters of each setting, once.
 fn settings(rows: &[Row]) -> String {
     let mut list = String::new();
     for (at, row) in rows.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Which settings of which engines are run on which meshes.
+//! The plan: which settings of which engines run on which meshes.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 /// Poisson's ratios of the block.
 pub(super) const RATIOS: [f64; 2] = [0.45, 0.49];
 
-/// The runs as people write them: `peers/plan.toml`.
+/// The plan as people write it: `peers/plan.toml`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Plan {
@@ -18,12 +18,12 @@ pub(super) struct Plan {
     pub(super) engines: Vec<Engine>,
 }
 
-/// An engine with the settings that are tried.
+/// An engine with its settings.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Engine {
     pub(super) name: String,
-    /// The package whose version is the engine's.
+    /// The package whose version is reported as the engine's.
     pub(super) package: String,
     /// Its script in `peers/`.
     pub(super) script: String,
@@ -34,22 +34,22 @@ pub(super) struct Engine {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Setting {
-    /// What it is good for: fast, accurate, ...
+    /// Its purpose: fast, accurate, ...
     name: String,
     meshes: Vec<Mesh>,
     #[serde(rename = "poissons_ratios")]
     ratios: Vec<f64>,
-    /// What the script gets.
+    /// Parameters for the script.
     parameters: Map<String, Value>,
 }
 
-/// A mesh that runs are made on.
+/// A mesh on which an engine runs.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 enum Mesh {
-    /// The one that this project's solver uses.
+    /// The mesh of this project's solver.
     Ours,
-    /// A box of this many cells a side.
+    /// A box with this many cells along each side.
     Regular([usize; 3]),
 }
 
@@ -73,7 +73,7 @@ impl Plan {
         toml::from_str(include_str!("../../peers/plan.toml")).context("peers/plan.toml")
     }
 
-    /// An engine's runs for some of its Poisson's ratios, each cut after some processor time, s.
+    /// An engine's runs for these Poisson's ratios, each cut after `limit_s` of processor time, s.
     pub(super) fn runs(&self, engine: &Engine, mesh_file: &Path, ratios: &[f64], limit_s: f64) -> Vec<Run> {
         let pinned = format!("{}==", engine.package);
         let version = self

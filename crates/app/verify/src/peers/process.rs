@@ -15,7 +15,7 @@ use super::row::{Figures, Row};
 /// Folder of the scripts.
 const SCRIPTS: &str = "crates/app/verify/peers";
 
-/// Wall time for starting an engine and compiling its kernels, s.
+/// Wall time allowed for starting an engine and compiling its kernels, s.
 const START_UP_S: f64 = 600.0;
 
 /// A virtual environment with the other engines.
@@ -25,7 +25,7 @@ pub(super) struct Python {
 }
 
 impl Python {
-    /// Makes the environment, or finds it as it should be.
+    /// Makes the environment, or reuses it if it matches the packages.
     pub(super) fn prepare(work: &Path, packages: &[String]) -> Result<Self> {
         let venv = work.join("venv");
         let python = Python {
@@ -41,7 +41,8 @@ impl Python {
         Ok(python)
     }
 
-    /// Seconds that an engine's very first start takes, its kernels being compiled; later ones find them.
+    /// Time of an engine's very first start, during which it compiles its kernels, s. Later starts
+    /// reuse them.
     pub(super) fn first_start(&self, engine: &Engine, runs: &[Run]) -> Option<f64> {
         let mut run = runs.first()?.clone();
         eprintln!("{}, first start", engine.name);
@@ -52,7 +53,7 @@ impl Python {
         self.figures(&run).ok().map(|figures| figures.start_up_s)
     }
 
-    /// Makes a run.
+    /// Runs a press, and returns its row.
     pub(super) fn row(&self, run: &Run, first_start_s: Option<f64>) -> Row {
         match self.figures(run) {
             Ok(figures) => Row::measured(run, figures, first_start_s),
@@ -69,7 +70,7 @@ impl Python {
         command
             .arg(std::path::absolute(Path::new(SCRIPTS).join(&run.script))?)
             .arg(serde_json::to_string(&run.parameters)?)
-            .current_dir(&self.work) // engines leave logs where they run
+            .current_dir(&self.work) // engines leave logs in their working directory
             .env("PYTHONDONTWRITEBYTECODE", "1")
             .env("WARP_CACHE_PATH", std::path::absolute(self.kernels())?);
         measured(
@@ -80,7 +81,7 @@ impl Python {
     }
 }
 
-/// Our own run, in a process of its own like the others.
+/// The run of this project's solver, in a process of its own like the others.
 pub(super) fn ours(work: &Path, poissons_ratio: f64) -> Row {
     let run = Run {
         engine: "TwinTac".into(),
@@ -103,7 +104,8 @@ pub(super) fn ours(work: &Path, poissons_ratio: f64) -> Row {
     }
 }
 
-/// What a process prints; its talk goes to a log, whose last line is the reason if it fails.
+/// The printed figures of a process. Its other messages go to a log, whose last line is the reason
+/// if it fails.
 fn measured(mut command: Command, log: &Path, limit_s: f64) -> Result<Figures> {
     let file = File::create(log).with_context(|| format!("creating {}", log.display()))?;
     let mut child = command.stdout(Stdio::piped()).stderr(file).spawn()?;
@@ -125,7 +127,8 @@ fn measured(mut command: Command, log: &Path, limit_s: f64) -> Result<Figures> {
     Figures::parse(&String::from_utf8_lossy(&output.stdout))
 }
 
-/// A command held to two processors, and to two threads where a library asks.
+/// A command that is restricted to two processors, and to two threads in libraries with such a
+/// setting.
 fn on_two_processors(program: &Path) -> Command {
     let pin = Command::new("taskset")
         .arg("--version")
@@ -155,14 +158,14 @@ fn succeed(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// What it was measured on, and when.
+/// The machine and the time of the measurement.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Conditions {
     pub(super) date: String,
     pub(super) processor: String,
     pub(super) processors: usize,
     pub(super) memory_gib: f64,
-    /// Processes that wanted to run over the last fifteen minutes: what was more than two was somebody else's.
+    /// Load average of the last fifteen minutes. The part above two was other work.
     pub(super) load: f64,
     /// The command.
     pub(super) command: String,
@@ -170,7 +173,7 @@ pub(super) struct Conditions {
     pub(super) limit_s: f64,
 }
 
-/// Describes this machine and this moment.
+/// Describes this machine and the present time.
 pub(super) fn conditions(limit_s: f64) -> Conditions {
     let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
     let field = |text: &str, name: &str| {

@@ -1,4 +1,4 @@
-//! One run's figures, and how far they are off the reference.
+//! One run's figures, and their errors against the reference.
 
 use std::collections::BTreeMap;
 
@@ -8,27 +8,28 @@ use serde_json::{Map, Value};
 
 use super::plan::Run;
 
-/// Depths, mm, at which forces are compared, and the forces for ν = 0.45 and 0.49, N: CalculiX 2.20, 10-node tetrahedra,
-/// Neo-Hookean, a quarter of the block; a finer mesh moves them by less than 0.2 %.
+/// Depths, mm, at which forces are compared, and the reference forces for ν = 0.45 and 0.49, N:
+/// CalculiX 2.20, 10-node tetrahedra, Neo-Hookean, a quarter of the block. A finer mesh changes
+/// them by less than 0.2 %.
 const REFERENCE_N: [(&str, f64, f64); 3] = [
     ("0.5", 0.2110, 0.2243),
     ("1.0", 0.7113, 0.7588),
     ("2.0", 2.5517, 2.7141),
 ];
 
-/// What a script prints: one line of JSON.
+/// The line of JSON that a script prints.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub(super) struct Figures {
     pub(super) nodes: usize,
-    /// Elements; hexahedra where an engine has a grid of them.
+    /// Number of elements; hexahedra for an engine with a grid of them.
     pub(super) tets: usize,
-    /// Simulated over wall time, without start-up.
+    /// Real-time factor: simulated time divided by wall time, without start-up.
     pub(super) rtf: f64,
-    /// Processor seconds, of all threads, for each simulated second.
+    /// Processor seconds of all threads for each simulated second.
     pub(super) cpu_s: f64,
-    /// From the start of the process to the first step of the press, s.
+    /// Time from the start of the process to the first step of the press, s.
     pub(super) start_up_s: f64,
-    /// How deep the press came before its time was up, mm.
+    /// Depth that the press reached within its time, mm.
     pub(super) reached_mm: f64,
     /// Force, N, at depths, mm.
     pub(super) force_n: BTreeMap<String, f64>,
@@ -36,7 +37,7 @@ pub(super) struct Figures {
     pub(super) memory_mib: f64,
 }
 
-/// A run and what came of it.
+/// A run and its result.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Row {
     pub(super) engine: String,
@@ -44,12 +45,12 @@ pub(super) struct Row {
     pub(super) setting: String,
     pub(super) mesh: String,
     pub(super) poissons_ratio: f64,
-    /// Everything that the script was told.
+    /// All parameters of the script.
     pub(super) parameters: Map<String, Value>,
-    /// The engine's very first start, with compilation, s.
+    /// Time of the engine's very first start, with compilation, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) first_start_s: Option<f64>,
-    /// `None` if nothing came of it.
+    /// The figures; `None` if the run failed.
     #[serde(flatten)]
     pub(super) figures: Option<Figures>,
     /// Error of the force, %, at depths, mm.
@@ -60,7 +61,7 @@ pub(super) struct Row {
 }
 
 impl Figures {
-    /// Reads the last line that a script printed.
+    /// Parses the last line that a script printed.
     pub(super) fn parse(printed: &str) -> Result<Self> {
         let line = printed.lines().last().context("it printed nothing")?;
         serde_json::from_str(line).with_context(|| format!("it printed `{line}`"))
@@ -79,7 +80,7 @@ impl Figures {
 }
 
 impl Row {
-    /// A run that gave figures.
+    /// The row of a run with figures.
     pub(super) fn measured(run: &Run, figures: Figures, first_start_s: Option<f64>) -> Self {
         Row {
             error_percent: figures.error_percent(run.poissons_ratio),
@@ -90,7 +91,7 @@ impl Row {
         }
     }
 
-    /// A run that gave none.
+    /// The row of a run without figures.
     pub(super) fn failed(run: &Run, why: &str) -> Self {
         Row {
             engine: run.engine.clone(),
@@ -106,7 +107,7 @@ impl Row {
         }
     }
 
-    /// Largest error of the force, %, over the depths that were reached.
+    /// Largest error of the force over the depths that were reached, %.
     pub(super) fn worst_percent(&self) -> Option<f64> {
         self.error_percent
             .values()
@@ -121,7 +122,7 @@ impl Row {
             .is_some_and(|figures| !figures.force_n.contains_key("2.0"))
     }
 
-    /// The error at a depth as tables show it.
+    /// The error at a depth, as tables show it.
     pub(super) fn shown_error(&self, depth: &str) -> String {
         self.error_percent
             .get(depth)

@@ -1,4 +1,4 @@
-//! Each fault in turn.
+//! Recordings with one fault each.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,10 +10,10 @@ use twintac_log::Event;
 use super::lab_bench::{LabBench, Summary, WORK, read};
 use crate::files::write_whole;
 
-/// Time of the bench at which a fault begins, s: the gel is pressed by then.
+/// Bench time at which a fault begins, s. The gel is pressed by then.
 const BEGINS_S: f64 = 2.5;
 
-/// Name, what as TOML, how long it lasts, as TOML, and how a recording with it must end.
+/// Name, fault as TOML, duration as TOML, and how a recording with the fault must end.
 const FAULTS: [(&str, &str, Option<&str>, Ends); 20] = [
     (
         "a taxel is gone",
@@ -140,31 +140,31 @@ const FAULTS: [(&str, &str, Option<&str>, Ends); 20] = [
 /// How a recording must end.
 #[derive(Clone, Copy)]
 enum Ends {
-    /// Stopped, by a cause that says this.
+    /// Stopped, by a cause that contains this text.
     Stops(&'static str),
     /// Recorded to the end, with a gap marked in this stream.
     Marks(&'static str),
-    /// Recorded to the end, with a note that says this.
+    /// Recorded to the end, with a note that contains this text.
     Notes(&'static str),
-    /// Recorded to the end: such a fault need not cost a reading, and where it does, that is marked.
+    /// Recorded to the end. Such a fault may cost no reading; a lost one is marked.
     Whole,
 }
 
-/// What became of a recording with one fault.
+/// The result of a recording with one fault.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Outcome {
     pub(crate) fault: String,
     pub(crate) summary: Summary,
-    /// Marks of gaps, a stream each.
+    /// Number of marked gaps in each stream.
     pub(crate) gaps: BTreeMap<String, usize>,
-    /// What the log notes besides.
+    /// Other notes of the log.
     pub(crate) notes: Vec<String>,
-    /// Whether it ended as it must.
+    /// Whether the recording ended as required.
     pub(crate) is_as_it_must: bool,
 }
 
 impl Outcome {
-    /// It ended as it must, and nothing is lost in silence.
+    /// Whether it ended as required, and every lost reading is marked.
     pub(crate) fn is_sound(&self) -> bool {
         self.is_as_it_must && self.summary.lost_unmarked == 0
     }

@@ -11,18 +11,19 @@ use super::lab_bench::{LabBench, read};
 /// Longest time from the start to the kill, s: within the second press.
 const LATEST_S: f64 = 9.0;
 
-/// What was left.
+/// The state after the kills.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Kills {
-    /// Recordings that were killed.
+    /// Number of recordings that were killed.
     pub(crate) kills: usize,
-    /// Of these, while a press was being recorded.
+    /// Number of these that were killed during a press.
     pub(crate) while_recording: usize,
-    /// Logs that were left, in all.
+    /// Number of logs that were left.
     pub(crate) logs: usize,
-    /// Of these, such as do not open.
+    /// The logs that cannot be opened, with the reason.
     pub(crate) unreadable: Vec<String>,
-    /// From the last message in the log to the kill, s, of those that were killed while recording.
+    /// Time from the last message in the log to the kill, s, of recordings that were killed during
+    /// a press.
     pub(crate) missing_s: Vec<f64>,
 }
 
@@ -36,7 +37,7 @@ impl Kills {
     }
 }
 
-/// Records `count` times, and kills each recording at a moment that `seed` draws.
+/// Makes `count` recordings, and kills each at a random time; `seed` determines the times.
 pub(crate) fn run(bench: &LabBench, count: usize, seed: u64) -> Result<Kills> {
     let mut chance = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut kills = Kills {
@@ -60,7 +61,8 @@ pub(crate) fn run(bench: &LabBench, count: usize, seed: u64) -> Result<Kills> {
                 Err(error) => kills.unreadable.push(format!("{}: {error:#}", log.display())),
                 Ok(reading) if is_cut => {
                     kills.while_recording += 1;
-                    // One that was killed before its first message lacks nothing older than itself.
+                    // If a recording was killed before its first message, the missing time starts
+                    // when its file was created.
                     let begun_ns = unix_ns(std::fs::metadata(&log)?.created()?)?;
                     let last_ns = reading.last_unix_ns.unwrap_or(begun_ns);
                     kills
@@ -82,5 +84,5 @@ pub(crate) fn run(bench: &LabBench, count: usize, seed: u64) -> Result<Kills> {
 
 /// Wall-clock time, ns since 1970.
 fn unix_ns(time: SystemTime) -> Result<u64> {
-    Ok(time.duration_since(UNIX_EPOCH)?.as_nanos() as u64) // until the year 2554
+    Ok(time.duration_since(UNIX_EPOCH)?.as_nanos() as u64) // fits until the year 2554
 }

@@ -1,4 +1,4 @@
-//! The command, run on the emulated bench, and the logs that it leaves.
+//! Runs the command on the emulated bench, and reads its logs.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -9,10 +9,10 @@ use twintac_log::{Body, Event, LogReader};
 
 use crate::files::write_whole;
 
-/// Where the runs go.
+/// Folder of the runs.
 pub(super) const WORK: &str = "target/bench-recording";
 
-/// A press that is long enough for any fault to show.
+/// A protocol whose presses are long enough for every fault.
 const PROTOCOL: &str = r#"summary = "Two presses, held for three seconds"
 indenters = ["sphere-25"]
 places = { kind = "grid", x_mm = [-4.0, 4.0], y_mm = [0.0, 0.0], count = [2, 1] }
@@ -60,7 +60,7 @@ impl LabBench {
         })
     }
 
-    /// Forgets the logs, and keeps what the emulated gel answers.
+    /// Removes the logs, and keeps the computed responses of the emulated gel.
     pub(super) fn clear(&self) -> Result<()> {
         match std::fs::remove_dir_all(self.logs()) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error.into()),
@@ -83,7 +83,7 @@ impl LabBench {
         command
     }
 
-    /// Records to the end, or to where the bench is stopped.
+    /// Records to the end, or until the bench is stopped.
     pub(super) fn record(&self, faults: Option<&Path>) -> Result<Summary> {
         let output = self.command(faults).output().context("starting twintac")?;
         let said = String::from_utf8_lossy(&output.stdout);
@@ -92,11 +92,11 @@ impl LabBench {
             .with_context(|| format!("{line}{}", String::from_utf8_lossy(&output.stderr)))
     }
 
-    /// All logs of the run, those that were set aside too, sorted by name.
+    /// All logs of the run, including those that were set aside, sorted by name.
     pub(super) fn log_files(&self) -> Result<Vec<PathBuf>> {
         let mut files = Vec::new();
         let Ok(entries) = std::fs::read_dir(self.logs()) else {
-            return Ok(files); // killed before it made the folder
+            return Ok(files); // the command was killed before it made the folder
         };
         for entry in entries {
             let path = entry?.path();
@@ -110,7 +110,7 @@ impl LabBench {
     }
 }
 
-/// What a log says happened, and when its last message came.
+/// The events of a log, its number of frames, and the time of its last message.
 pub(super) struct Reading {
     pub(super) events: Vec<Event>,
     pub(super) frames: u64,

@@ -1,5 +1,5 @@
-//! What a recording on the emulated bench is worth: its rate, what each fault does to it, and what a kill leaves. Through the command,
-//! as its users have it: `cargo xtask bench recording`.
+//! Recording on the emulated bench: its frame rate, the effect of each fault, and the state after a
+//! kill. The benchmark runs the command as users do: `cargo xtask bench recording`.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -17,15 +17,15 @@ use crate::files::write_whole;
 use lab_bench::LabBench;
 use results::Results;
 
-/// Where the results go.
+/// Folder of the results.
 const RESULTS: &str = "docs/benchmarks";
 
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// Recordings to kill.
+    /// Number of recordings to kill.
     #[arg(long, default_value_t = 50)]
     kills: usize,
-    /// Seed of the moments at which they are killed.
+    /// Seed of the times at which they are killed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
@@ -54,7 +54,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         && results.kills.is_sound();
     ensure!(
         is_sound,
-        "see {RESULTS}/recording.md: something was lost in silence, or a fault did not end as it must"
+        "see {RESULTS}/recording.md: readings were lost and not marked, or a fault did not end as required"
     );
     Ok(())
 }

@@ -11,10 +11,10 @@ pub(super) fn markdown(results: &Results) -> String {
         "# Recording on the emulated bench\n\n\
          `{}` made this page ({} data): `twintac record --lab` presses twice with a 25 mm ball over loopback sockets and an I²C bus that is emulated\n\
          down to its registers and its 400 kHz, in real time.\n\n\
-         Nothing goes wrong: {} frames of eight taxels at **{:.1} Hz**, {} lost without a mark.\n\n\
-         ## Each fault in turn\n\n\
-         A fault begins while the gel is held. *Lost* are readings that the log lacks without saying so, found by reading it again. The stop's\n\
-         latency counts from the arrival of its cause, or from the end of the longest allowed silence, in servo periods of 8 ms.\n\n\
+         Without faults: {} frames of eight taxels at **{:.1} Hz**, {} lost and not marked.\n\n\
+         ## Faults\n\n\
+         Each fault begins during a hold. The column *lost* counts readings that the log lacks without a marked gap, found by reading the log again.\n\
+         The latency of the stop is the time from the arrival of its cause, or from the end of the longest allowed silence, in servo periods of 8 ms.\n\n\
          | fault | outcome | gaps marked | lost | stop latency, periods |\n|---|---|---|---|---|\n",
         results.command, results.provenance, whole.frames, whole.rate_hz, whole.lost_unmarked
     );
@@ -35,8 +35,8 @@ pub(super) fn markdown(results: &Results) -> String {
     let kills = &results.kills;
     let _ = write!(
         page,
-        "\n## Killed\n\n\
-         {} recordings were ended by SIGKILL at random moments, {} of them while a press was being recorded. Of the {} logs left, {} do not open;\n\
+        "\n## Kills\n\n\
+         {} recordings were ended by SIGKILL at random moments, {} of them while a press was being recorded. Of the {} remaining logs, {} cannot be opened;\n\
          at most {:.2} s before the kill are missing.\n",
         kills.kills,
         kills.while_recording,

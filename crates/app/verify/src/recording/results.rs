@@ -1,4 +1,4 @@
-//! What is found, as `recording.json` has it.
+//! The results of the benchmark: `recording.json`.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,12 +6,12 @@ use super::faults::Outcome;
 use super::kills::Kills;
 use super::lab_bench::Summary;
 
-/// All that was found.
+/// All results.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Results {
     pub(super) command: String,
     pub(super) provenance: String,
-    /// A run in which nothing goes wrong.
+    /// A run without faults.
     pub(super) whole: Summary,
     pub(super) faults: Vec<Outcome>,
     pub(super) kills: Kills,

@@ -1,4 +1,4 @@
-//! What a rung of the verification ladder is, and what it comes to.
+//! A verification test ("rung"), and its outcome.
 
 mod outcome;
 pub(crate) mod plots;
@@ -7,7 +7,7 @@ use anyhow::Result;
 
 pub(crate) use outcome::{Figure, Outcome, Plot, number};
 
-/// A rung.
+/// A verification test.
 pub(crate) struct Rung {
     pub(crate) number: u8,
     pub(crate) name: &'static str,
@@ -15,17 +15,17 @@ pub(crate) struct Rung {
     pub(crate) run: fn(Effort) -> Result<Outcome>,
 }
 
-/// How much work a rung may be.
+/// The extent of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effort {
     /// Minutes.
     Quick,
-    /// As much as it takes.
+    /// As long as needed.
     Full,
 }
 
 impl Effort {
-    /// One or the other.
+    /// The first or the second value.
     pub(crate) fn choose<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,

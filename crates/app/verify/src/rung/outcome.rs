@@ -1,18 +1,18 @@
-//! What a rung comes to.
+//! The outcome of a verification test.
 
 use serde::Serialize;
 use twintac_plot::Scene;
 
-/// What a rung comes to.
+/// The outcome of a verification test.
 #[derive(Default)]
 pub(crate) struct Outcome {
-    /// What was done, in a few sentences.
+    /// The method, in a few sentences.
     pub(crate) done: String,
     pub(crate) figures: Vec<Figure>,
     pub(crate) plots: Vec<Plot>,
 }
 
-/// A number, and what it has to be.
+/// A number and its limit.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Figure {
     pub(crate) name: String,
@@ -22,14 +22,14 @@ pub(crate) struct Figure {
     pub(crate) holds: bool,
 }
 
-/// What a number has to be.
+/// The limit of a number.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Limit {
-    /// Its size, whatever its sign.
+    /// Limit of the absolute value.
     AtMost(f64),
     AtLeast(f64),
-    /// Told for what it is worth.
+    /// No limit: the number is for information.
     None,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Plot {
 }
 
 impl Figure {
-    /// A number whose size has a limit; what is no number does not hold.
+    /// A number whose absolute value has a limit. NaN does not hold.
     pub(crate) fn at_most(limit: f64, name: impl Into<String>, value: f64, unit: &'static str) -> Self {
         Self {
             name: name.into(),
@@ -53,7 +53,7 @@ impl Figure {
         }
     }
 
-    /// A number that has to reach another.
+    /// A number with a lower limit.
     pub(crate) fn at_least(limit: f64, name: impl Into<String>, value: f64, unit: &'static str) -> Self {
         Self {
             name: name.into(),
@@ -64,7 +64,7 @@ impl Figure {
         }
     }
 
-    /// A number that is told, not judged.
+    /// A number without a limit.
     pub(crate) fn told(name: impl Into<String>, value: f64, unit: &'static str) -> Self {
         Self {
             name: name.into(),
@@ -77,7 +77,7 @@ impl Figure {
 }
 
 impl Outcome {
-    /// Whether every figure holds, of which there has to be one.
+    /// Whether there is at least one figure, and all hold.
     pub(crate) fn holds(&self) -> bool {
         !self.figures.is_empty() && self.figures.iter().all(|figure| figure.holds)
     }

@@ -1,4 +1,4 @@
-//! Plots of the ladder.
+//! Plots of the verification tests.
 
 use twintac_plot::{Ink, Scene};
 use twintac_plot::{Panel, Panels, Series};
@@ -22,7 +22,7 @@ pub(crate) fn dashes(name: impl Into<String>, color: usize, points: Vec<[f64; 2]
     }
 }
 
-/// Lines in a box; the vertical axis is logarithmic if asked for.
+/// Lines in a frame, with a logarithmic vertical axis if requested.
 pub(crate) fn lines(
     title: &str,
     [x_label, y_label]: [&str; 2],
@@ -44,7 +44,7 @@ pub(crate) fn lines(
     .scene()
 }
 
-/// How many values lie where, as steps.
+/// A histogram of values, as steps.
 pub(crate) fn histogram(name: &str, color: usize, values: &[f64], range: [f64; 2], n_bins: usize) -> Series {
     let [low, high] = range;
     let mut counts = vec![0_u32; n_bins];

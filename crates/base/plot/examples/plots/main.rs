@@ -1,4 +1,5 @@
-//! Every kind of plot, from invented data, to look at: `cargo run -p twintac-plot --example plots [folder]`.
+//! Draws every kind of plot from made-up data, to look at:
+//! `cargo run -p twintac-plot --example plots [folder]`.
 
 mod plots;
 

@@ -2,7 +2,7 @@
 
 use twintac_plot::{Bar, Bars, Density, HeatMap, HeatMaps, Ink, Panel, Panels, Places, Scene, Series};
 
-/// A label that no picture has room for.
+/// A label that is too long for every picture.
 pub(crate) fn long(label: &str) -> String {
     format!(
         "{label} {}",
@@ -10,7 +10,7 @@ pub(crate) fn long(label: &str) -> String {
     )
 }
 
-/// Every kind of plot by name, its labels made by `label`.
+/// Every kind of plot with its name; `label` makes the labels.
 pub(crate) fn plots(label: fn(&str) -> String) -> Vec<(&'static str, Scene)> {
     vec![
         ("bars", bars(label).scene()),

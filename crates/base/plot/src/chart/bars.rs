@@ -1,4 +1,4 @@
-//! Horizontal bars with their values beside them, and whiskers for uncertainty.
+//! Horizontal bars with their values, and whiskers for uncertainty.
 
 use super::{BELOW, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent};
@@ -11,7 +11,7 @@ use crate::scene::{Anchor, SMALL, Scene};
 pub struct Bar {
     /// Name on the left.
     pub name: String,
-    /// Length in the unit of the axis; a bar that is not a number shows a dash.
+    /// Length in the unit of the axis; for NaN a dash is shown.
     pub value: f64,
     /// Half the length of the whisker, if there is one.
     pub uncertainty: Option<f64>,

@@ -1,4 +1,5 @@
-//! Two quantities that should agree, as the logarithm of how many readings fall into each cell.
+//! Two quantities that should agree, as a density: the logarithm of the number of readings in each
+//! cell.
 
 use super::{BELOW, LABEL, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent, padded};
@@ -6,10 +7,10 @@ use crate::color::{Ink, viridis};
 use crate::font::text_width;
 use crate::scene::{Anchor, Mark, SMALL, Scene};
 
-/// Cells along either axis.
+/// Number of cells along each axis.
 const CELLS: usize = 72;
 
-/// Pairs of numbers that would lie on the diagonal if they agreed.
+/// Pairs of numbers, which lie on the diagonal if they agree.
 #[derive(Clone, Debug, Default)]
 pub struct Density {
     /// Title.
@@ -66,7 +67,8 @@ impl Density {
     }
 }
 
-/// How many readings a shade stands for, and what the dashed line is, from `at` to the right.
+/// Draws the key from `at` to the right: the number of readings of each shade, and what the dashed
+/// line is.
 fn draw_key(scene: &mut Scene, [left, y]: [f64; 2], most: f64, shade: impl Fn(f64) -> [u8; 3]) {
     const STEPS: usize = 48;
     const WIDTH: f64 = 80.0;

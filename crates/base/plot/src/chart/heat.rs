@@ -1,4 +1,4 @@
-//! Maps side by side on one colour scale.
+//! Maps side by side, with one colour scale.
 
 use crate::axis::{Axis, extent};
 use crate::color::{Ink, viridis};
@@ -16,7 +16,7 @@ pub struct HeatMap {
     pub max_mm: [f64; 2],
     /// Columns and rows of the grid.
     pub grid: [usize; 2],
-    /// A value for each cell, `[rows][columns]` flattened, the row of smallest y first.
+    /// A value for each cell, `[rows][columns]` flattened; the row with the smallest y comes first.
     pub values: Vec<f64>,
 }
 
@@ -25,7 +25,7 @@ pub struct HeatMap {
 pub struct HeatMaps {
     /// Title.
     pub title: String,
-    /// Maps over rectangles of one shape.
+    /// Maps over rectangles of the same size.
     pub maps: Vec<HeatMap>,
     /// Unit of the values, above the colour scale.
     pub unit: String,
@@ -36,7 +36,7 @@ pub struct HeatMaps {
 }
 
 impl HeatMaps {
-    /// Draws the maps beside each other, or below each other where they are long.
+    /// Draws the maps beside each other, or above each other if they are long.
     pub fn scene(&self) -> Scene {
         const WIDTH: f64 = super::WIDTH_PX;
         const GAP: f64 = 16.0;
@@ -89,7 +89,7 @@ impl HeatMaps {
     fn draw_map(&self, scene: &mut Scene, map: &HeatMap, range: [f64; 2], at: [f64; 2], size: [f64; 2]) {
         let [columns, rows] = map.grid;
         let shade = |value: f64| viridis((value - range[0]) / (range[1] - range[0]).max(1e-12));
-        // The picture's first row is at the top, where y is largest.
+        // The first row of the picture is at the top, where y is largest.
         let flipped = (0..rows)
             .rev()
             .filter_map(|row| map.values.get(row * columns..(row + 1) * columns));
@@ -120,7 +120,7 @@ impl HeatMaps {
                         centre[1] + radius_mm * angle.sin(),
                     ])
                 });
-            // Outside the map the circle has no place.
+            // The parts of the circle outside of the map are not drawn.
             let inside = |[x, y]: [f64; 2]| {
                 (at[0]..=at[0] + size[0]).contains(&x) && (at[1]..=at[1] + size[1]).contains(&y)
             };
@@ -136,20 +136,20 @@ fn size_mm(map: &HeatMap) -> [f64; 2] {
     [0, 1].map(|axis| map.max_mm[axis] - map.min_mm[axis])
 }
 
-/// Pixels between the tick texts of a colour bar, about.
+/// Approximate distance between the tick texts of a colour bar, px.
 const TICK_GAP: f64 = 28.0;
-/// Room of the longest unit that is written in full, px.
+/// Width of the longest unit that is written in full, px.
 const LONGEST_UNIT: f64 = 90.0;
 
-/// Room that a bar of the map colours takes with its texts, px.
+/// Width of a colour bar with its texts, px.
 pub(crate) fn color_bar_room(range: [f64; 2], unit: &str) -> f64 {
-    // However long the bar, its texts are not wider than those of a long one.
+    // The texts of a short bar are not wider than those of a long one.
     let ticks = Axis::linear(range, [600.0, 0.0]).ticks(TICK_GAP);
     let ticks = 15.0 + widest(ticks.iter().map(|(_, text)| text.as_str()), SMALL);
     ticks.max(text_width(unit, SMALL).min(LONGEST_UNIT))
 }
 
-/// A vertical bar of the map colours with ticks on its right.
+/// Draws a vertical colour bar with ticks on its right.
 pub(crate) fn draw_color_bar(
     scene: &mut Scene,
     range: [f64; 2],

@@ -1,4 +1,4 @@
-//! Lines over a shared horizontal axis, in one panel or several.
+//! Lines over a common horizontal axis, in one panel or several.
 
 use super::{BELOW, LABEL, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent, padded};
@@ -9,15 +9,16 @@ use crate::scene::{Anchor, SMALL, Scene};
 /// One line.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Name in the legend; series of one name in several panels share an entry, an empty name has none.
+    /// Name in the legend. Series of the same name in several panels share an entry; an empty name
+    /// has no entry.
     pub name: String,
-    /// x and y in the units of the axes, in the order to be joined.
+    /// Points [x, y] in the units of the axes, in the order in which they are joined.
     pub points: Vec<[f64; 2]>,
     /// Colour.
     pub ink: Ink,
     /// Width of the line, px.
     pub width_px: f64,
-    /// Whether the line is interrupted.
+    /// Whether the line is dashed.
     pub dashed: bool,
 }
 
@@ -30,7 +31,7 @@ pub struct Panel {
     pub y_label: String,
     /// Lines, from back to front.
     pub series: Vec<Series>,
-    /// Range of the vertical axis; from the data if `None`.
+    /// Range of the vertical axis; `None` takes it from the data.
     pub y_range: Option<[f64; 2]>,
 }
 
@@ -79,7 +80,7 @@ impl Panels {
             let name = fitted(&panel.name, SMALL, LONGEST_NAME);
             let middle = 0.5 * (top + bottom);
             scene.small([right + 8.0, middle + 4.0], name, Ink::Text, Anchor::Start);
-            // Neighbours with the same quantity share one label in the middle.
+            // Neighbours with the same quantity share one label in their middle.
             let same = |other: &&Panel| other.y_label == panel.y_label;
             if index == 0 || self.panels[index - 1].y_label != panel.y_label {
                 let run = self.panels[index..].iter().take_while(same).count() as f64;
@@ -150,7 +151,8 @@ impl Panels {
     }
 }
 
-/// At most about `most` points that keep every peak: the lowest and the highest of each run of neighbours.
+/// At most about `most` points that keep every peak: the lowest and the highest of each run of
+/// neighbours.
 fn thinned(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let run = points.len().div_ceil(most.max(2) / 2).max(1);
     if run <= 2 {

@@ -1,4 +1,5 @@
-//! Charts. Each is a plain struct whose `scene` is a pure function of it; what is not a number is left out.
+//! Charts. Each is a plain struct, whose method `scene` depends on the struct alone. Values that
+//! are not numbers are left out.
 
 mod bars;
 mod density;
@@ -17,9 +18,10 @@ pub use scatter::{Scatter, ScatterPoint};
 /// Width of a chart that stands alone or beside others, px.
 const WIDTH_PX: f64 = 380.0;
 
-/// Pixels left of the tick texts of a chart's vertical axis, for its label.
+/// Distance between the tick texts of the vertical axis and the edge of the chart, for the axis
+/// label, px.
 pub(crate) const LABEL: f64 = 20.0;
-/// Pixels below a chart's box, for tick texts and the axis label.
+/// Height below the box of a chart, for tick texts and the axis label, px.
 pub(crate) const BELOW: f64 = 40.0;
-/// Pixels right of a chart's box.
+/// Width to the right of the box of a chart, px.
 pub(crate) const RIGHT: f64 = 12.0;

@@ -1,4 +1,4 @@
-//! A number at each pressed place, as colour over the gel.
+//! A number at each pressed location, as colour over the gel.
 
 use super::heat::{color_bar_room, draw_color_bar};
 use super::{BELOW, LABEL, WIDTH_PX};
@@ -6,23 +6,23 @@ use crate::axis::{Axis, extent, padded};
 use crate::color::{Ink, viridis};
 use crate::scene::Scene;
 
-/// Places on the gel with one value each.
+/// Locations on the gel with one value each.
 #[derive(Clone, Debug, Default)]
 pub struct Places {
     /// Title.
     pub title: String,
     /// Unit of the values.
     pub unit: String,
-    /// Where, mm.
+    /// The locations, mm.
     pub places_mm: Vec<[f64; 2]>,
-    /// How much, one a place.
+    /// The value at each location.
     pub values: Vec<f64>,
-    /// Places to mark, such as taxels, mm.
+    /// Points to mark, such as taxels, mm.
     pub marks_mm: Vec<[f64; 2]>,
 }
 
 impl Places {
-    /// Draws the places in their true proportions; the colour scale ends at the 99th percentile.
+    /// Draws the locations in true proportions; the colour scale ends at the 99th percentile.
     pub fn scene(&self) -> Scene {
         const HEIGHT: f64 = 340.0;
         let shown = || {

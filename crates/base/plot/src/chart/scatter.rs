@@ -1,4 +1,4 @@
-//! Points over two quantities, a third as colour.
+//! Points over two quantities; a third quantity is shown as colour.
 
 use super::heat::{color_bar_room, draw_color_bar};
 use super::{BELOW, LABEL};
@@ -10,19 +10,20 @@ use crate::scene::{Anchor, SMALL, Scene};
 /// Size of the chart, px.
 const SIZE: [f64; 2] = [560.0, 360.0];
 
-/// Ratio of largest to smallest from which an axis of positive numbers is logarithmic.
+/// Ratio of the largest to the smallest value above which an axis of positive numbers is
+/// logarithmic.
 const WIDE: f64 = 20.0;
 
 /// One point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScatterPoint {
-    /// Where, in the units of the axes.
+    /// Position, in the units of the axes.
     pub at: [f64; 2],
-    /// What its colour shows.
+    /// The value that its colour shows.
     pub value: f64,
-    /// Whether it stands out: the others are small and pale.
+    /// Whether the point is emphasized; other points are small and pale.
     pub is_ringed: bool,
-    /// A name beside it, if it is not empty.
+    /// A label beside the point; none if empty.
     pub name: String,
 }
 
@@ -42,7 +43,8 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// Draws the points, those that stand out last. Axes are logarithmic where positive numbers reach over more than a factor of 20.
+    /// Draws the points; emphasized points come last, on top of the others. An axis is logarithmic
+    /// if its numbers are positive and span more than a factor of 20.
     pub fn scene(&self) -> Scene {
         let is_number = |point: &&ScatterPoint| {
             point.value.is_finite() && point.at.iter().all(|coordinate| coordinate.is_finite())

@@ -1,12 +1,13 @@
-//! What a page is made of.
+//! Building blocks of a page.
 
 use crate::Scene;
 
-/// A word in a pill that says where figures come from. `real`, `emulated` and `simulated` have colours of their own.
+/// A coloured label that states the provenance of figures. `real`, `emulated` and `simulated` have
+/// colours of their own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Badge(pub String);
 
-/// A run of text, or a badge within it.
+/// A run of text, or a badge within text.
 #[derive(Clone, Debug)]
 pub enum Span {
     /// Words.
@@ -15,7 +16,7 @@ pub enum Span {
     Badge(Badge),
 }
 
-/// A paragraph; one without words is left out.
+/// A paragraph; it is left out if it has no words.
 #[derive(Clone, Debug, Default)]
 pub struct Paragraph(pub Vec<Span>);
 
@@ -30,17 +31,17 @@ impl<T: Into<String>> From<T> for Paragraph {
     }
 }
 
-/// A name with its value as text.
+/// A name with a value as text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Fact {
-    /// What it is.
+    /// Name of the quantity.
     pub name: String,
     /// Its value with the unit.
     pub value: String,
 }
 
 impl Fact {
-    /// A fact from anything that reads as text.
+    /// A fact from anything that converts to text.
     pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
         Fact {
             name: name.into(),
@@ -49,12 +50,12 @@ impl Fact {
     }
 }
 
-/// A value in large print over its name.
+/// A value in large print above its name.
 #[derive(Clone, Debug, Default)]
 pub struct Card {
     /// What is shown.
     pub fact: Fact,
-    /// Where it comes from.
+    /// Its provenance.
     pub badge: Badge,
 }
 
@@ -63,22 +64,22 @@ pub struct Card {
 pub struct Figure {
     /// The picture.
     pub scene: Scene,
-    /// Where its numbers come from, if it shows any.
+    /// Provenance of its numbers, if it shows any.
     pub badge: Option<Badge>,
     /// What it shows.
     pub caption: String,
-    /// The same in numbers, below it.
+    /// The same data in numbers, shown below it.
     pub table: Option<Table>,
 }
 
 /// A cell of a table.
 #[derive(Clone, Debug)]
 pub enum Cell {
-    /// On the left.
+    /// Words, aligned left.
     Words(String),
-    /// On the right.
+    /// A number, aligned right.
     Number(String),
-    /// Where the row's numbers come from.
+    /// Provenance of the row's numbers.
     Badge(Badge),
 }
 
@@ -87,7 +88,7 @@ pub enum Cell {
 pub struct Row {
     /// From left to right.
     pub cells: Vec<Cell>,
-    /// Whether the row is emphasised.
+    /// Whether the row is emphasized.
     pub is_chosen: bool,
 }
 
@@ -100,7 +101,7 @@ impl From<Vec<Cell>> for Row {
     }
 }
 
-/// A table; one without rows is left out.
+/// A table; it is left out if it has no rows.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// What it shows.
@@ -111,25 +112,25 @@ pub struct Table {
     pub rows: Vec<Row>,
 }
 
-/// A thing on a page.
+/// An element of a page.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A paragraph.
     Text(Paragraph),
-    /// Values with their names, large, beside each other.
+    /// Values with their names, in large print beside each other.
     Cards(Vec<Card>),
     /// Values with their names, as a list.
     Facts(Vec<Fact>),
-    /// Pictures beside each other where there is room.
+    /// Pictures beside each other if there is room.
     Figures(Vec<Figure>),
-    /// A picture that takes the whole width.
+    /// A picture over the whole width.
     Wide(Box<Figure>),
     /// A table.
     Table(Table),
-    /// A list of what the reader should mind, with its heading.
+    /// A heading, and a list of warnings.
     Warnings(&'static str, Vec<String>),
     /// A command line.
     Command(String),
-    /// A text that is shown on demand, with its heading.
+    /// A heading, and a text that is shown on demand.
     Details(&'static str, String),
 }

@@ -1,33 +1,33 @@
-//! What a page holds.
+//! The contents of a page.
 
 use super::block::{Badge, Block, Paragraph};
 
 /// A page.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
-    /// What kind of page it is, above the title.
+    /// Kind of the page, shown above the title.
     pub kind: String,
     /// Its title.
     pub title: String,
-    /// Where its figures come from.
+    /// Provenance of its figures.
     pub badge: Badge,
-    /// The result in one or two sentences; the first paragraph is set larger.
+    /// The result in one or two sentences; the first paragraph has larger print.
     pub lead: Vec<Paragraph>,
-    /// What the reader must know before trusting a number.
+    /// Warnings that the reader must know before trusting a number.
     pub warnings: Vec<String>,
-    /// Its parts; those without blocks are left out.
+    /// Its sections; those without blocks are left out.
     pub sections: Vec<Section>,
-    /// Whether it is to fit one printed page: small print, no table of contents.
+    /// Whether it should fit one printed page: small print, no table of contents.
     pub is_sheet: bool,
 }
 
-/// A part of a page.
+/// A section of a page.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
     /// Anchor.
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
-    /// What it shows.
+    /// Its contents.
     pub blocks: Vec<Block>,
 }

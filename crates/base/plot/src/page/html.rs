@@ -105,7 +105,7 @@ fn paragraph(Paragraph(spans): &Paragraph, class: &str) -> String {
     format!("<p{class}>{}</p>\n", text.join(" "))
 }
 
-/// A heading over a list; nothing without lines.
+/// A heading and a list; nothing if the list is empty.
 fn warnings(heading: &str, lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
@@ -146,7 +146,7 @@ fn facts(facts: &[Fact]) -> String {
     format!("<dl class=\"facts\">\n{facts}</dl>\n")
 }
 
-/// Pictures beside each other; one that has a table shares its place with it.
+/// Pictures beside each other; a picture shares its place with its table.
 fn figures(shown: &[Figure]) -> String {
     if shown.is_empty() {
         return String::new();

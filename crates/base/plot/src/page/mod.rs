@@ -1,4 +1,5 @@
-//! A page of texts, tables and scenes as one HTML file: no scripts, no requests, the same bytes for the same contents.
+//! A page of texts, tables and scenes as one HTML file: no scripts, no requests, and the same bytes
+//! for the same contents.
 
 mod block;
 mod contents;
@@ -18,7 +19,7 @@ impl Page {
         html::page(self)
     }
 
-    /// Writes the page to `path`, whole or not at all.
+    /// Writes the page to `path`; the file appears complete or not at all.
     ///
     /// # Errors
     /// [`PlotError::Write`] if the file cannot be written.

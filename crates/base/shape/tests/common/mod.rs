@@ -1,4 +1,4 @@
-//! Surfaces of triangles, and STL files of them.
+//! Triangle surfaces, and STL files of them.
 
 #![allow(dead_code)] // each test uses some of it
 
@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-/// A box from -half to half.
+/// A box from `-half` to `half`.
 pub(crate) fn box_triangles(half: DVec3) -> Vec<[DVec3; 3]> {
     let corner = |bits: u8| {
         let sign = |bit: u8| if bits >> bit & 1 == 1 { 1.0 } else { -1.0 };
@@ -51,7 +51,7 @@ pub(crate) fn ball_triangles(radius_mm: f64, n: u32) -> Vec<[DVec3; 3]> {
         .collect()
 }
 
-/// The same triangles elsewhere.
+/// The same triangles, moved.
 pub(crate) fn moved(triangles: &[[DVec3; 3]], by_mm: DVec3) -> Vec<[DVec3; 3]> {
     triangles
         .iter()

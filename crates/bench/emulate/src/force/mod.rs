@@ -1,7 +1,8 @@
 //! The force/torque sensor: an ATI Net F/T, as its clients see it by UDP and HTTP.
 //!
-//! Source: ATI Industrial Automation, Network Force/Torque Sensor System, manual 9620-05-NET FT. Records, requests and the page are
-//! made and read by the codecs of `twintac-rig`, in the other direction.
+//! Source: ATI Industrial Automation, Network Force/Torque Sensor System, manual 9620-05-NET FT.
+//! The codecs of `twintac-rig` make and read the records, requests and the page, in the other
+//! direction.
 
 mod sensor;
 mod server;

@@ -1,4 +1,4 @@
-//! What the sensor measures and sends.
+//! Measurements and datagrams of the force sensor.
 
 use twintac_random::{RandomStream, normal, stream};
 use twintac_rig::Wrench;
@@ -13,7 +13,8 @@ use crate::{EmulateError, FaultKind, ScheduledFault, Workcell};
 const SATURATED: u32 = 0x8002_0000;
 const MONITOR_LATCHED: u32 = 0x8001_0000;
 
-/// The sensor: requests in, datagrams out. It has no sockets, and no time but its workcell's.
+/// The sensor: requests in, datagrams out. It has no sockets, and its only time is that of its
+/// workcell.
 #[derive(Debug)]
 pub struct ForceSensor {
     settings: ForceSettings,
@@ -24,15 +25,15 @@ pub struct ForceSensor {
     bias: [f64; 6],
     is_latched: bool,
     stream: Option<Stream>,
-    /// Datagrams that are under way, and the one that waits for the next to overtake it.
+    /// Datagrams that are under way, and the one that waits to be overtaken by the next.
     under_way: Vec<Outgoing>,
     overtaken: Option<Vec<u8>>,
 }
 
-/// A datagram that is to go out at a time.
+/// A datagram and the time at which it is sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outgoing {
-    /// When, ns of the lab's clock.
+    /// Time, ns of the emulator's clock.
     pub at_ns: u64,
     /// Its bytes.
     pub datagram: Vec<u8>,
@@ -42,17 +43,17 @@ pub struct Outgoing {
 struct Stream {
     begun_ns: u64,
     records_per_datagram: usize,
-    /// Records to send, if not for ever.
+    /// Number of records still to send. `None`: no end.
     left: Option<u32>,
     n_measured: u64,
     held: Vec<Record>,
 }
 
 impl ForceSensor {
-    /// The sensor in a workcell, with the faults that are its own.
+    /// The sensor in a workcell. It takes its own faults from the list.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense.
+    /// A setting or a fault that is not valid.
     pub fn new(
         workcell: Workcell,
         settings: ForceSettings,
@@ -78,13 +79,14 @@ impl ForceSensor {
         self.schedule.add(fault);
     }
 
-    /// What its page says.
+    /// The content of its configuration page.
     #[must_use]
     pub fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
-    /// Carries a request out; a datagram that is none is ignored. Says whether it begins a stream, to whoever asked.
+    /// Carries out a request. Ignores a datagram that is no request. Returns whether the request
+    /// begins a stream to its sender.
     pub fn hear(&mut self, datagram: &[u8]) -> bool {
         let Ok(request) = Request::decode(datagram) else {
             return false;
@@ -100,7 +102,7 @@ impl ForceSensor {
                 return false;
             }
             Command::Bias => {
-                // As it reads now, noise and all.
+                // The bias is the present reading, with its noise.
                 self.bias = self.measure(now_ns);
                 return false;
             }
@@ -117,7 +119,7 @@ impl ForceSensor {
         true
     }
 
-    /// The datagrams that go out until now, in their order.
+    /// The datagrams that are due by now, in their order.
     pub fn due(&mut self) -> Vec<Outgoing> {
         let now_ns = self.workcell.clock().now_ns();
         while let Some(at_ns) = self.next_record_ns().filter(|at_ns| *at_ns <= now_ns) {
@@ -143,14 +145,14 @@ impl ForceSensor {
         due
     }
 
-    /// When there will be something to send, ns of the lab's clock; never, as far as it knows, if nothing.
+    /// When the next datagram will be due, ns of the emulator's clock. `None` if none is known.
     #[must_use]
     pub(crate) fn next_due_ns(&self) -> Option<u64> {
         let late = self.under_way.iter().map(|outgoing| outgoing.at_ns);
         late.chain(self.next_record_ns()).min()
     }
 
-    /// When the next record is measured: the first one right when the stream begins.
+    /// When the next record is measured. The first one is measured when the stream begins.
     fn next_record_ns(&self) -> Option<u64> {
         let stream = self.stream.as_ref()?;
         let after_s = stream.n_measured as f64 / self.settings.rate_hz;
@@ -178,7 +180,8 @@ impl ForceSensor {
         for (is_set, condition) in [(is_saturated, SATURATED), (self.is_latched, MONITOR_LATCHED)] {
             bits |= if is_set { condition } else { 0 };
         }
-        // The sensor's own clock, counted so that no two records share a tick. Both counters wrap.
+        // Ticks of the sensor's own clock. They are computed so that no two records share a tick.
+        // Both counters wrap around.
         let begun_ns = self.stream.as_ref().map_or(at_ns, |stream| stream.begun_ns);
         let ticks = (seconds(begun_ns) * TICKS_PER_SECOND).floor()
             + (n_measured as f64 * TICKS_PER_SECOND / self.settings.rate_hz).round();
@@ -190,7 +193,7 @@ impl ForceSensor {
         }
     }
 
-    /// What the gauges say, before any bias.
+    /// The reading of the gauges, before any bias.
     fn measure(&mut self, at_ns: u64) -> [f64; 6] {
         let Wrench { force_n, torque_n_mm } = self.workcell.at_ns(at_ns).sensed.wrench;
         let mut axes = [
@@ -212,7 +215,7 @@ impl ForceSensor {
         axes
     }
 
-    /// Puts a datagram on its way, as far as faults let it.
+    /// Puts a datagram on its way, changed by the faults.
     fn send(&mut self, at_ns: u64, datagram: Vec<u8>) {
         self.schedule.next_event(seconds(at_ns));
         if self.schedule.has(FaultKind::LostDatagrams) {

@@ -12,12 +12,12 @@ use crate::robot::listen;
 use crate::worker::{Over, Worker, locked};
 use crate::{EmulateError, ScheduledFault, Workcell};
 
-/// How long a thread looks away from its socket.
+/// Longest time between two looks at the socket.
 const GLANCE: Duration = Duration::from_millis(1);
-/// How long a browser may take to ask.
+/// Longest time that a browser may take for its request.
 const ASK_WITHIN: Duration = Duration::from_millis(200);
 
-/// A force sensor that listens on the loopback, until it is dropped.
+/// A force sensor that listens on the loopback until it is dropped.
 #[derive(Debug)]
 pub struct ForceServer {
     sensor: Arc<Mutex<ForceSensor>>,
@@ -30,7 +30,8 @@ impl ForceServer {
     /// Opens the sensor's sockets.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense, a port that is taken, no thread.
+    /// A setting or a fault that is not valid; a port that is in use; a thread that cannot be
+    /// started.
     pub fn start(
         workcell: Workcell,
         settings: ForceSettings,
@@ -63,25 +64,25 @@ impl ForceServer {
         })
     }
 
-    /// Where it takes requests.
+    /// Address of its requests.
     #[must_use]
     pub fn requests(&self) -> SocketAddr {
         self.requests
     }
 
-    /// Where its web server is.
+    /// Address of its web server.
     #[must_use]
     pub fn page(&self) -> SocketAddr {
         self.page
     }
 
-    /// A look at the sensor; its sockets wait meanwhile.
+    /// Gives access to the sensor. Its sockets wait meanwhile.
     pub fn with_sensor<T>(&self, look: impl FnOnce(&mut ForceSensor) -> T) -> T {
         look(&mut locked(&self.sensor))
     }
 }
 
-/// Hears requests, and sends what is due to whoever asked last.
+/// Receives requests, and sends due datagrams to the last client that started a stream.
 fn stream(socket: &UdpSocket, workcell: &Workcell, sensor: &Mutex<ForceSensor>, over: &Over) {
     let mut client = None;
     let mut bytes = [0; 64];
@@ -95,7 +96,7 @@ fn stream(socket: &UdpSocket, workcell: &Workcell, sensor: &Mutex<ForceSensor>, 
             }
             for outgoing in sensor.due() {
                 if let Some(client) = client {
-                    // Lost like any other datagram, if it cannot be sent.
+                    // A datagram that cannot be sent is lost like any other lost datagram.
                     let _ = socket.send_to(&outgoing.datagram, client);
                 }
             }
@@ -109,7 +110,7 @@ fn stream(socket: &UdpSocket, workcell: &Workcell, sensor: &Mutex<ForceSensor>, 
 fn show(listener: &TcpListener, text: &str, over: &Over) {
     while !over.is_over() {
         match listener.accept() {
-            // Whoever went away before the answer needs none.
+            // A client that went away before the answer needs none.
             Ok((stream, _)) => drop(answer(stream, text)),
             Err(_) => std::thread::sleep(5 * GLANCE),
         }

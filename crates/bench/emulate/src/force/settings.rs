@@ -1,4 +1,4 @@
-//! What the force sensor is like.
+//! Settings of the force sensor.
 
 use serde::{Deserialize, Serialize};
 use twintac_rig::netft::Configuration;
@@ -6,27 +6,28 @@ use twintac_rig::netft::Configuration;
 use crate::EmulateError;
 use crate::error::{check_not_negative, check_positive};
 
-/// The force sensor and its sockets.
+/// Settings of the force sensor and its sockets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ForceSettings {
-    /// UDP port for requests, and TCP port of its web server; 0 for any that is free.
+    /// UDP port for requests, and TCP port of its web server. 0: any free port.
     pub ports: [u16; 2],
-    /// Records in a second, Hz; at most 7000.
+    /// Records per second, Hz; at most 7000.
     pub rate_hz: f64,
-    /// Records in a datagram that is buffered.
+    /// Records in a buffered datagram.
     pub buffered_records: usize,
-    /// Counts for a newton.
+    /// Counts per newton.
     pub counts_per_newton: f64,
-    /// Counts for a newton metre.
+    /// Counts per newton metre.
     pub counts_per_newton_metre: f64,
-    /// Largest Fx, Fy, Fz, N, and Tx, Ty, Tz, N mm, to either side; beyond, the gauges are saturated.
+    /// Largest Fx, Fy, Fz, N, and Tx, Ty, Tz, N mm, positive or negative. Beyond them the gauges
+    /// are saturated.
     pub range: [f64; 6],
-    /// Deviation of a record's forces, N.
+    /// Standard deviation of a record's forces, N.
     pub noise_n: f64,
-    /// Deviation of a record's torques, N mm.
+    /// Standard deviation of a record's torques, N mm.
     pub noise_n_mm: f64,
-    /// What it reads without load, before its first bias: Fx, Fy, Fz, N, and Tx, Ty, Tz, N mm.
+    /// Reading without load before the first bias: Fx, Fy, Fz, N, and Tx, Ty, Tz, N mm.
     pub zero: [f64; 6],
     /// Force above which a monitor condition is latched, N, if there is one.
     pub monitor_n: Option<f64>,
@@ -35,7 +36,8 @@ pub struct ForceSettings {
 }
 
 impl Default for ForceSettings {
-    /// A Mini45 with the calibration SI-290-10, a million counts for a unit, 1000 records a second and 50 mN of noise.
+    /// A Mini45 with the calibration SI-290-10, a million counts per unit, 1000 records a second
+    /// and 50 mN of noise.
     fn default() -> Self {
         Self {
             ports: [0; 2],
@@ -54,7 +56,7 @@ impl Default for ForceSettings {
 }
 
 impl ForceSettings {
-    /// What its page says.
+    /// The content of its configuration page.
     #[must_use]
     pub fn configuration(&self) -> Configuration {
         Configuration {
@@ -80,7 +82,10 @@ impl ForceSettings {
             ("force.noise_n_mm", self.noise_n_mm),
         ])?;
         if self.zero.iter().any(|zero| !zero.is_finite()) {
-            return Err(EmulateError::setting("force.zero", "has a number that is none"));
+            return Err(EmulateError::setting(
+                "force.zero",
+                "has a number that is not finite",
+            ));
         }
         if self.rate_hz > 7000.0 {
             let problem = format!("is {}, expected at most 7000", self.rate_hz);

@@ -1,31 +1,33 @@
-//! What a CPS135B is like.
+//! Settings of a CPS135B.
 
 use serde::{Deserialize, Serialize};
 
-/// A kind of CPS135B.
+/// A variant of the CPS135B.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BarometerSettings {
-    /// Counts for a pascal.
+    /// Counts per Pa.
     pub counts_per_pa: f64,
     /// Pressure at 0 counts, Pa.
     pub offset_pa: f64,
-    /// Whether counts are two's complement, rather than from 0 to 2²⁴ - 1.
+    /// Whether counts are in two's complement. Otherwise they go from 0 to 2²⁴ - 1.
     pub is_signed: bool,
-    /// Deviation of a reading at 1024 samples, Pa; more samples are quieter by the square root.
+    /// Standard deviation of a reading of 1024 samples, Pa. It falls with the square root of the
+    /// number of samples.
     pub noise_pa: f64,
-    /// Time of a conversion of temperature and pressure at 1024 samples, s.
+    /// Time of a conversion of temperature and pressure with 1024 samples, s.
     pub conversion_s: f64,
-    /// Time that each further 1024 samples take, s; a guess.
+    /// Additional time for each further 1024 samples, s. This is a guess.
     pub conversion_s_per_1024: f64,
-    /// Deviation of parts' times from these, as a fraction.
+    /// Standard deviation of the times of parts from these times, as a fraction.
     pub conversion_spread: f64,
-    /// What register 0xA6 wakes up with: the factory's gain, and in the lowest three bits the code of the samples.
+    /// Value of register 0xA6 after power-up: the factory's gain, and in the lowest three bits the
+    /// code of the samples.
     pub pressure_configuration: u8,
 }
 
 impl Default for BarometerSettings {
-    /// 32 counts for a pascal, 15 Pa of noise, conversions of 5.7 ms, give or take 2 %.
+    /// 32 counts per Pa, 15 Pa of noise, conversions of 5.7 ms with a spread of 2 %.
     fn default() -> Self {
         Self {
             counts_per_pa: 32.0,
@@ -41,7 +43,7 @@ impl Default for BarometerSettings {
 }
 
 impl BarometerSettings {
-    /// The 24 bits of a pressure, held at the ends of their range.
+    /// The 24 bits of a pressure, clamped to their range.
     #[must_use]
     pub fn counts(&self, pressure_pa: f64) -> u32 {
         let counts = ((pressure_pa - self.offset_pa) * self.counts_per_pa).round() as i64;

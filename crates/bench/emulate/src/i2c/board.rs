@@ -1,4 +1,4 @@
-//! The bus, and what is on it.
+//! The bus and the parts on it.
 
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -17,10 +17,10 @@ use crate::schedule::Schedule;
 use crate::worker::locked;
 use crate::{EmulateError, FaultKind, ScheduledFault, Workcell};
 
-/// Lateness beyond which the bus does not catch up.
+/// Delay beyond which the bus does not try to catch up, ns.
 const MOST_LATE_NS: u64 = 5_000_000;
 
-/// A sensor's board, with its lines.
+/// A sensor's board, with its bus.
 #[derive(Clone)]
 pub struct Board {
     parts: Arc<Mutex<Parts>>,
@@ -29,17 +29,19 @@ pub struct Board {
     timeout_ns: u64,
 }
 
-/// A controller's port to the board. A transaction takes as long as its clocks do: nine for a byte, one for each START and STOP.
+/// A controller's port to the board. A transaction takes as long as its clocks: nine for a byte,
+/// one for each START and STOP.
 ///
-/// What is not acknowledged is [`ErrorKind::NoAcknowledge`], a data line that is held [`ErrorKind::Bus`].
+/// A byte that is not acknowledged gives [`ErrorKind::NoAcknowledge`]; a data line that is held
+/// gives [`ErrorKind::Bus`].
 #[derive(Clone)]
 pub struct Bus(Board);
 
 impl Board {
-    /// A board in a workcell, with the faults that show on its bus.
+    /// A board in a workcell. It takes the faults that show on its bus from the list.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense.
+    /// A setting or a fault that is not valid.
     pub fn new(
         workcell: Workcell,
         settings: &BoardSettings,
@@ -89,7 +91,7 @@ impl Board {
         Bus(self.clone())
     }
 
-    /// The bus's clock and data lines, as pins, while no transaction is under way.
+    /// The bus's clock and data lines, as pins, for use while no transaction is under way.
     #[must_use]
     pub fn lines(&self) -> (ClockLine, DataLine) {
         let parts = || Arc::clone(&self.parts);
@@ -104,14 +106,14 @@ impl Board {
         (clock, data)
     }
 
-    /// The RESET of all switches.
+    /// The RESET line of all switches.
     #[must_use]
     pub fn reset_line(&self) -> ResetLine {
         let parts = Arc::clone(&self.parts);
         ResetLine { parts }
     }
 
-    /// How long each barometer takes for a conversion as it is set, s.
+    /// How long each barometer takes for a conversion with its present settings, s.
     #[must_use]
     pub fn conversions_s(&self) -> Vec<f64> {
         let parts = locked(&self.parts);
@@ -146,8 +148,8 @@ impl Board {
         result
     }
 
-    /// Waits for the end of a transaction. The operating system wakes late, by about the time of a transaction: what one took too long, the
-    /// next ones are shorter.
+    /// Waits for the end of a transaction. The operating system wakes a thread late, by about the
+    /// time of a transaction. The next transactions are shortened by the delay of this one.
     fn pace(&self, ends_ns: u64) {
         let clock = self.workcell.clock();
         let due_ns = ends_ns.saturating_sub(locked(&self.parts).late_ns);

@@ -1,4 +1,4 @@
-//! The wires themselves, for freeing a bus that hangs.
+//! The lines of the bus as pins, for freeing a hung bus.
 
 use std::convert::Infallible;
 use std::sync::{Arc, Mutex};
@@ -8,7 +8,7 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use super::parts::Parts;
 use crate::worker::locked;
 
-/// The bus's clock line as an open-drain pin: each of its rising edges is a clock.
+/// The bus's clock line as an open-drain pin. Each of its rising edges is a clock.
 #[derive(Clone, Debug)]
 pub struct ClockLine {
     pub(super) parts: Arc<Mutex<Parts>>,

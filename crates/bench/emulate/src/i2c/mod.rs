@@ -1,7 +1,9 @@
-//! The sensor: a bus with switches (TCA9548A) and barometers behind them, register by register and clock by clock.
+//! The sensor: a bus with switches (TCA9548A) and barometers behind them, register by register and
+//! clock by clock.
 //!
-//! Sources: Texas Instruments SCPS207 for the switch; for each kind of barometer those that its file names. What no source says is guessed,
-//! and stands in [`BarometerSettings`] where it can be.
+//! Sources: Texas Instruments SCPS207 for the switch; for each kind of barometer the documents that
+//! its file names. What no source states is a guess, and is a setting in [`BarometerSettings`]
+//! where possible.
 
 mod barometer_settings;
 mod board;

@@ -1,4 +1,4 @@
-//! What is on the bus.
+//! The parts on the bus.
 
 use super::chip::{EmulatedChip, Felt, Now};
 use super::switch::Switch;
@@ -6,16 +6,16 @@ use crate::clock::seconds;
 use crate::schedule::Schedule;
 use crate::{FaultKind, Workcell};
 
-/// Clocks after which whoever holds the data line has sent its byte.
+/// Clocks after which a part that holds the data line has sent its byte.
 const HELD_CLOCKS: u8 = 9;
 
 /// A barometer that is soldered to the board.
 #[derive(Debug)]
 pub(super) struct Part {
     pub(super) address: u8,
-    /// Which of the switches it is behind, and on which channel; `None`: it is on the bus itself.
+    /// The switch and channel that it is behind. `None`: it is on the bus itself.
     pub(super) behind: Option<(usize, u8)>,
-    /// Which of the pressures that are felt is its own.
+    /// Index of its pressure in the output of the physics.
     pub(super) taxel: usize,
     pub(super) chip: Box<dyn EmulatedChip>,
     /// Whether the next byte written is the first after its address.
@@ -28,7 +28,7 @@ impl Part {
         self.behind.map(|(switch, channel)| 8 * switch as u8 + channel)
     }
 
-    /// Lets what was under way until now end.
+    /// Ends the operations whose time is over.
     pub(super) fn settle(&mut self, now_ns: u64, is_endless: bool, workcell: &Workcell) {
         let taxel = self.taxel;
         let felt = |ns: u64| {
@@ -46,24 +46,25 @@ impl Part {
     }
 }
 
-/// The switches, the barometers, and what goes wrong with them.
+/// The switches, the barometers and their faults.
 #[derive(Debug)]
 pub(super) struct Parts {
-    /// By address.
+    /// In the order of their addresses.
     pub(super) switches: Vec<Switch>,
     pub(super) barometers: Vec<Part>,
     pub(super) schedule: Schedule,
-    /// Who holds the data line, and for how many clocks more: each channel, counted over all switches, and the first switch.
+    /// Clocks for which each part still holds the data line: each channel, counted over all
+    /// switches, and last the first switch.
     held_clocks: [u8; 65],
-    /// How much later than it should have ended the last transaction did, ns.
+    /// Delay of the end of the last transaction, ns.
     pub(super) late_ns: u64,
 }
 
-/// The first switch, among those who may hold the data line.
+/// Index of the first switch in `held_clocks`.
 const SWITCH: usize = 64;
 
 impl Parts {
-    /// All well, and no channel open.
+    /// Parts without a fault, with all channels closed.
     pub(super) fn new(switches: Vec<Switch>, barometers: Vec<Part>, schedule: Schedule) -> Self {
         Self {
             switches,
@@ -74,24 +75,24 @@ impl Parts {
         }
     }
 
-    /// Whether a channel is open, counted over all switches.
+    /// Whether a channel, counted over all switches, is open.
     pub(super) fn is_open(&self, channel: u8) -> bool {
         let switch = self.switches.get(usize::from(channel / 8));
         switch.is_some_and(|switch| switch.mask() >> (channel % 8) & 1 == 1)
     }
 
-    /// Whether somebody holds the data line on the controller's side of the switches.
+    /// Whether a part holds the data line on the controller's side of the switches.
     pub(super) fn is_held(&self) -> bool {
         let holds = |what| matches!(what, FaultKind::Short { channel } if self.is_open(channel));
         (0..self.held_clocks.len()).any(|part| self.holds(part)) || self.schedule.active().any(holds)
     }
 
-    /// Whether somebody holds the data line until it gets its clocks, and clocks reach it.
+    /// Whether a part holds the data line until it gets its clocks, and clocks reach it.
     fn holds(&self, part: usize) -> bool {
         self.held_clocks[part] > 0 && (part == SWITCH || self.is_open(part as u8))
     }
 
-    /// A clock, outside any transaction.
+    /// One clock, outside any transaction.
     pub(super) fn clock(&mut self) {
         for part in 0..self.held_clocks.len() {
             if self.holds(part) {
@@ -100,13 +101,13 @@ impl Parts {
         }
     }
 
-    /// The switches' RESET: they close their channels and let go of the bus.
+    /// RESET of the switches: they close their channels and release the bus.
     pub(super) fn reset(&mut self) {
         self.switches.iter_mut().for_each(Switch::reset);
         self.held_clocks[SWITCH] = 0;
     }
 
-    /// What goes wrong before the next transaction.
+    /// Carries out the faults that happen before the next transaction.
     pub(super) fn misbehave(&mut self, now_ns: u64) {
         let happened = self.schedule.next_event(seconds(now_ns));
         for what in happened {

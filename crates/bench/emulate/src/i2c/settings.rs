@@ -1,4 +1,4 @@
-//! What is soldered to the board.
+//! Settings of the board.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,35 +7,36 @@ use super::chip::{CHIPS, kind};
 use crate::error::{check_not_negative, check_positive};
 use crate::{EmulateError, MOST_TAXELS};
 
-/// A board of switches and barometers, and the bus it is on.
+/// A board of switches and barometers, and its bus.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BoardSettings {
-    /// Clock of the bus, Hz.
+    /// Clock frequency of the bus, Hz.
     pub bus_hz: f64,
-    /// After how long the controller gives up a transaction that cannot begin, s.
+    /// Time after which the controller gives up a transaction that cannot begin, s.
     pub timeout_s: f64,
-    /// The barometers: the first feels the first of the pressures, and so on.
+    /// The barometers, in the order of the pressures that they feel.
     pub parts: Vec<PartSettings>,
-    /// What a CPS135B is like, of which no data sheet says it.
+    /// The properties of a CPS135B that no data sheet states.
     pub barometer: BarometerSettings,
-    /// Deviation of readings, Pa, of chips other than the CPS135B; left out: what their data sheets say.
+    /// Standard deviation of readings, Pa, of chips other than the CPS135B. If left out: that of
+    /// their data sheets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise_pa: Option<f64>,
-    /// Seed of noise, and of what differs between parts.
+    /// Seed of the noise and of the differences between parts.
     pub seed: u64,
 }
 
-/// A barometer, and where it is.
+/// A barometer and its position on the bus.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartSettings {
-    /// Its manufacturer's name for it, such as `BMP390`.
+    /// The manufacturer's name of the chip, such as `BMP390`.
     pub chip: String,
-    /// Its 7-bit address; left out: the chip's first.
+    /// Its 7-bit address. If left out: the chip's first address.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<u8>,
-    /// The 7-bit address of the switch that it is behind; left out: it is on the bus itself.
+    /// The 7-bit address of the switch that it is behind. If left out: it is on the bus itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub switch: Option<u8>,
     /// The channel of that switch, 0 to 7.
@@ -55,7 +56,7 @@ impl PartSettings {
         }
     }
 
-    /// The 7-bit address; 0 of a chip that is not known.
+    /// The 7-bit address. 0 for an unknown chip.
     pub(super) fn address(&self) -> u8 {
         let usual = kind(&self.chip).map_or(0, |kind| kind.addresses[0]);
         self.address.unwrap_or(usual)
@@ -104,7 +105,7 @@ impl Default for BoardSettings {
 }
 
 impl BoardSettings {
-    /// The addresses of the switches, each once, the lowest first.
+    /// The addresses of the switches, each once, lowest first.
     pub(super) fn switches(&self) -> Vec<u8> {
         let mut addresses: Vec<u8> = self.parts.iter().filter_map(|part| part.switch).collect();
         addresses.sort_unstable();

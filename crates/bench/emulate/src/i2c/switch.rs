@@ -5,7 +5,7 @@
 pub(super) struct Switch {
     address: u8,
     mask: u8,
-    /// The byte written in this transaction; it counts from STOP on.
+    /// The byte written in this transaction. It takes effect at STOP.
     written: Option<u8>,
 }
 
@@ -34,7 +34,7 @@ impl Switch {
         self.mask = self.written.take().unwrap_or(self.mask);
     }
 
-    /// RESET, or power that comes back.
+    /// RESET, or power-up.
     pub(super) fn reset(&mut self) {
         *self = Self::new(self.address);
     }

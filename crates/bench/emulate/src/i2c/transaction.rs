@@ -1,4 +1,4 @@
-//! What a transaction does to whom, clock by clock.
+//! What a transaction does to the parts, clock by clock.
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 
@@ -61,7 +61,7 @@ impl<'a> Transaction<'a> {
             part.is_addressed = !is_reading;
             n_heard += 1;
         });
-        // Whoever hears it pulls the line: one is enough.
+        // Every part with this address pulls the line: one is enough.
         acknowledged(n_heard, NoAcknowledgeSource::Address)
     }
 
@@ -82,7 +82,7 @@ impl<'a> Transaction<'a> {
         acknowledged(n_heard, NoAcknowledgeSource::Data)
     }
 
-    /// The byte that all who speak make together: a line is low if one of them pulls it.
+    /// The byte that all answering parts make together: a line is low if one of them pulls it.
     fn read(&mut self, address: u8) -> u8 {
         self.clocks += 9;
         let mut byte = self
@@ -92,7 +92,7 @@ impl<'a> Transaction<'a> {
         byte
     }
 
-    /// STOP; when it is, ns of the lab's clock.
+    /// STOP. Returns its time, ns of the emulator's clock.
     pub(super) fn stop(&mut self) -> u64 {
         self.clocks += 1;
         self.parts
@@ -103,7 +103,7 @@ impl<'a> Transaction<'a> {
         self.now_ns()
     }
 
-    /// The switch of that address, if it answers.
+    /// The switch with that address, if it answers.
     fn switch(&self, address: u8) -> Option<usize> {
         let is_away = self
             .parts
@@ -117,7 +117,7 @@ impl<'a> Transaction<'a> {
         found.filter(|_| !is_away)
     }
 
-    /// All barometers at the address that are there and on open channels.
+    /// All barometers at the address that answer and are on open channels.
     fn each_barometer(&mut self, address: u8, mut tell: impl FnMut(&mut Part, u64)) {
         let now_ns = self.now_ns();
         for index in 0..self.parts.barometers.len() {

@@ -1,4 +1,4 @@
-//! How the arm moves.
+//! Motion of the arm.
 
 use std::collections::VecDeque;
 
@@ -9,24 +9,25 @@ use crate::EmulateError;
 use crate::error::{check_not_negative, check_positive};
 use crate::mix::mix_poses;
 
-/// How near the goal counts as there, mm and radians.
+/// Tolerance within which a goal counts as reached, mm and radians.
 const THERE_MM: f64 = 0.01;
 const THERE_RAD: f64 = 1e-4;
 
-/// How the arm follows.
+/// How the arm follows its goal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ArmSettings {
-    /// Time constant of a first-order lag behind the pose that it is told, s.
+    /// Time constant of a first-order lag behind the commanded pose, s.
     pub lag_s: f64,
-    /// Fastest that the tool moves, mm/s.
+    /// Largest speed of the tool, mm/s.
     pub max_speed_mm_per_s: f64,
-    /// Fastest that the tool turns, rad/s.
+    /// Largest angular speed of the tool, rad/s.
     pub max_turn_rad_per_s: f64,
 }
 
 impl Default for ArmSettings {
-    /// 30 ms of lag, 1000 mm/s and half a turn a second; the lag is a guess, the speed the manufacturer's limit.
+    /// 30 ms of lag, 1000 mm/s and half a turn a second. The lag is a guess, the speed is the
+    /// manufacturer's limit.
     fn default() -> Self {
         Self {
             lag_s: 0.03,
@@ -46,19 +47,19 @@ impl ArmSettings {
     }
 }
 
-/// A line to go along.
+/// A line to move along.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     to: TcpPose,
     speed_mm_per_s: f64,
 }
 
-/// The arm: where its tool is, and where it was told to be.
+/// The arm: the pose of its tool, and its goal.
 #[derive(Clone, Debug)]
 pub(crate) struct Arm {
     settings: ArmSettings,
     pose: TcpPose,
-    /// What it follows: the latest servo pose, or a point that goes along the lines.
+    /// What it follows: the latest servo pose, or a point that moves along the lines.
     goal: TcpPose,
     lines: VecDeque<Line>,
     is_paused: bool,
@@ -79,12 +80,12 @@ impl Arm {
         self.pose
     }
 
-    /// Where it was told to be last.
+    /// The latest goal.
     pub(crate) fn goal(&self) -> TcpPose {
         self.goal
     }
 
-    /// Lines that are not done.
+    /// Number of lines that are not finished.
     pub(crate) fn n_lines(&self) -> usize {
         self.lines.len()
     }
@@ -102,7 +103,7 @@ impl Arm {
         self.lines.push_back(Line { to, speed_mm_per_s });
     }
 
-    /// Holds where it is, until it goes on.
+    /// Holds its position until it is resumed.
     pub(crate) fn pause(&mut self) {
         self.is_paused = true;
         self.goal = self.pose;
@@ -112,7 +113,7 @@ impl Arm {
         self.is_paused = false;
     }
 
-    /// Holds where it is, and forgets its lines.
+    /// Holds its position and discards its lines.
     pub(crate) fn halt(&mut self) {
         self.lines.clear();
         self.is_paused = false;
@@ -153,7 +154,8 @@ impl Arm {
     }
 }
 
-/// A fraction of the way from one pose to another, no farther than allowed, mm and radians.
+/// A pose at a fraction of the way from one pose to another, but no farther than allowed, mm and
+/// radians.
 fn nearer(from: &TcpPose, to: &TcpPose, fraction: f64, most_mm: f64, most_rad: f64) -> TcpPose {
     let way = fraction * from.distance_mm(to) / most_mm;
     let turn = fraction * from.turn_rad(to) / most_rad;

@@ -1,4 +1,4 @@
-//! What the controller answers, and what it lets the arm do.
+//! Responses of the controller, and its commands to the arm.
 
 use glam::DVec3;
 use twintac_rig::TcpPose;
@@ -12,13 +12,13 @@ use crate::fault::FaultWire;
 use crate::schedule::Schedule;
 use crate::{EmulateError, FaultKind, ScheduledFault, Workcell};
 
-/// A bit for each joint of six.
+/// All joints: a bit for each of six.
 const ALL_JOINTS: u8 = 0x3f;
-/// Angles that look like an arm's over its work; they never change.
+/// Joint angles that resemble those of an arm at work. They never change.
 const JOINTS_RAD: [f32; 7] = [0.0, -0.7, -0.6, 0.0, 1.3, 0.0, 0.0];
-/// Moves that may wait.
+/// Most moves that may wait.
 const MOST_LINES: usize = 256;
-/// The protocol's number with a life sign, which newer clients change to.
+/// The protocol number with a heartbeat, to which newer clients change.
 const PROTOCOL_WITH_LIFE_SIGN: u16 = 3;
 
 /// Codes of errors and warnings.
@@ -27,16 +27,17 @@ const OUT_OF_REACH: u8 = 40;
 const QUEUE_FULL: u8 = 11;
 const BAD_PARAMETER: u8 = 12;
 
-/// The controller: requests in, responses out. It has no sockets, and no time but its workcell's.
+/// The controller: requests in, responses out. It has no sockets, and its only time is that of its
+/// workcell.
 #[derive(Debug)]
 pub struct Controller {
     settings: RobotSettings,
     workcell: Workcell,
     schedule: Schedule,
     mode: Mode,
-    /// Ready stands for ready or moving, whichever the arm is.
+    /// `Ready` stands for ready and for moving. The arm tells which of them it is.
     state: MotionState,
-    /// Joints whose motors are on and brakes released, a bit each.
+    /// Joints whose motors are on and brakes released, one bit each.
     pub(super) enabled: u8,
     pub(super) error: u8,
     pub(super) warning: u8,
@@ -44,15 +45,16 @@ pub struct Controller {
     pub(super) payload: [f32; 4],
     pub(super) collision_sensitivity: u8,
     pub(super) teach_sensitivity: u8,
-    /// Times that its connections were cut.
+    /// How many times its connections were cut.
     n_resets: u64,
 }
 
 impl Controller {
-    /// The controller of the arm in a workcell, as it is after power-up: stopped, its motors off; with the faults that are its own.
+    /// The controller of the arm in a workcell, as after power-up: stopped, with its motors off. It
+    /// takes its own faults from the list.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense.
+    /// A setting or a fault that is not valid.
     pub fn new(
         workcell: Workcell,
         settings: RobotSettings,
@@ -84,13 +86,15 @@ impl Controller {
         self.schedule.add(fault);
     }
 
-    /// The answer to a frame of the command socket; none to what is no request, or while a fault keeps it silent.
+    /// The response to a frame of the command socket. `None` if the frame is no request, or while a
+    /// fault suppresses responses.
     pub fn respond(&mut self, frame: &[u8]) -> Option<Vec<u8>> {
         let happened = self.schedule.next_event(self.workcell.clock().now_s());
         self.suffer(happened);
         let request = match Request::decode(frame) {
             Ok(request) => request,
-            // A known command with a payload that makes no sense: its header is fine, or there would be no frame.
+            // A known command with an invalid payload. Its header is valid, or there would be no
+            // frame.
             Err(_) => Request {
                 transaction: u16::from_be_bytes([*frame.first()?, *frame.get(1)?]),
                 protocol: u16::from_be_bytes([*frame.get(2)?, *frame.get(3)?]),
@@ -101,7 +105,7 @@ impl Controller {
             },
         };
         let is_known = matches!(request.protocol, PROTOCOL | PROTOCOL_WITH_LIFE_SIGN);
-        // An answer with the function of feedback would be none.
+        // A response with the function code of feedback would be read as feedback.
         if !is_known || request.command.function() == FEEDBACK {
             return None;
         }
@@ -120,13 +124,13 @@ impl Controller {
         (!is_silent).then(|| response.encode())
     }
 
-    /// Lets faults happen that are due by now.
+    /// Carries out the faults that are due by now.
     pub fn look(&mut self) {
         let happened = self.schedule.look(self.workcell.clock().now_s());
         self.suffer(happened);
     }
 
-    /// What it is doing.
+    /// The state of the robot.
     #[must_use]
     pub fn state(&self) -> MotionState {
         match self.state {
@@ -135,25 +139,25 @@ impl Controller {
         }
     }
 
-    /// Its mode.
+    /// The mode.
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
-    /// Where its tool is.
+    /// Pose of the tool.
     #[must_use]
     pub fn pose(&self) -> TcpPose {
         self.workcell.now().tool
     }
 
-    /// Angles of its joints, radians; they stay as they are.
+    /// Angles of the joints, radians. They never change.
     #[must_use]
     pub fn joints_rad(&self) -> [f32; 7] {
         JOINTS_RAD
     }
 
-    /// Codes of its error and its warning; 0 for none.
+    /// Codes of error and warning. 0 for none.
     #[must_use]
     pub fn errors(&self) -> (u8, u8) {
         (self.error, self.warning)
@@ -189,7 +193,8 @@ impl Controller {
         self.workcell.steer(self.workcell.clock().now_ns(), tell)
     }
 
-    /// Stops with an error, which stays until it is cleaned. Emergency stops and errors of motors switch the motors off.
+    /// Stops with an error, which stays until it is cleared. Emergency stops and errors of motors
+    /// switch the motors off.
     fn fail(&mut self, code: u8) {
         self.error = code;
         if code <= 17 {
@@ -222,7 +227,8 @@ impl Controller {
         bits
     }
 
-    /// The payload that answers a command, or the bits that refuse it beside those that are set anyway.
+    /// The payload of the response to a command, or the state bits of its refusal, in addition to
+    /// the bits that are set anyway.
     fn carry_out(&mut self, command: &Command) -> Result<Vec<u8>, ResponseState> {
         let answer = match command {
             Command::GetVersion => Answer::Version(self.settings.version.clone()),
@@ -240,7 +246,7 @@ impl Controller {
         Ok(answer.encode())
     }
 
-    /// Does what changes something and has no answer.
+    /// Carries out a command that changes something and has no data in its response.
     fn act(&mut self, command: &Command) -> Result<(), ResponseState> {
         match command {
             Command::CleanError => self.error = 0,
@@ -275,7 +281,7 @@ impl Controller {
 
     fn set_state(&mut self, state: SetState) {
         match state {
-            // An error holds it where it is until it is cleaned.
+            // In an error the arm stays where it is until the error is cleared.
             SetState::Motion if self.error == 0 => {
                 self.state = MotionState::Ready;
                 self.steer(Arm::go_on);
@@ -325,7 +331,7 @@ impl Controller {
         Ok(())
     }
 
-    /// That it can move to a pose now.
+    /// Checks that the robot can move to a pose now.
     fn check_motion(&mut self, mode: Mode, pose: &TcpPose) -> Result<(), ResponseState> {
         if !self.is_ready() {
             return Err(ResponseState::NOT_READY);

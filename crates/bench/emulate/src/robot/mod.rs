@@ -1,7 +1,8 @@
-//! The robot: a UFACTORY xArm's controller, as its clients see it on their sockets.
+//! The robot: the controller of a UFACTORY xArm, as its clients see it on their sockets.
 //!
-//! Frames are made and read by the codecs of `twintac-rig`, in the other direction. What the manufacturer's client, xArm-Python-SDK, asks
-//! beyond them is answered as far as that client needs it. The arm has no kinematics: poses are followed, joint angles stay as they are.
+//! The codecs of `twintac-rig` make and read the frames, in the other direction. Further requests
+//! of the manufacturer's client, xArm-Python-SDK, are answered as far as that client needs it. The
+//! arm has no kinematics: its tool follows poses, and its joint angles never change.
 
 mod arm;
 mod controller;

@@ -1,4 +1,4 @@
-//! What the manufacturer's client asks beyond what ours does.
+//! Requests of the manufacturer's client that the client of `twintac-rig` does not use.
 
 use glam::DVec3;
 use twintac_rig::TcpPose;
@@ -7,14 +7,16 @@ use twintac_rig::xarm::ResponseState;
 use super::Controller;
 
 impl Controller {
-    /// The payload that answers a function, or the bits that refuse it. Function codes are those of its `x_config.py`.
+    /// The payload of the response to a function, or the state bits of its refusal. The function
+    /// codes are those of its `x_config.py`.
     pub(super) fn other(&mut self, function: u8, payload: &[u8]) -> Result<Vec<u8>, ResponseState> {
         let floats = |numbers: &[f32]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
         match (function, payload) {
             (2, _) => Ok(self.serial_numbers()),
-            // Currents rather than torques in reports: no.
+            // Whether reports have currents in place of torques: no.
             (5, _) => Ok(vec![0]),
-            // Jerks and accelerations, world frame, gravity, saved settings: nothing here depends on them.
+            // Jerks and accelerations, world frame, gravity, saved settings: they have no effect
+            // here.
             (31..=34 | 39 | 40 | 51 | 66 | 73, _) => Ok(Vec::new()),
             (35, _) if payload.len() >= 24 => {
                 let [x, y, z, roll, pitch, yaw] = numbers(payload).map(f64::from);
@@ -45,7 +47,7 @@ impl Controller {
             }
             // Torques of the joints.
             (55, _) => Ok(floats(&[0.0; 7])),
-            // The pose with an axis and an angle for its turn.
+            // The pose, with its rotation as an axis and an angle.
             (91, _) => {
                 let pose = self.pose();
                 let turn = pose.base_from_tool().to_scaled_axis();
@@ -64,7 +66,7 @@ impl Controller {
         }
     }
 
-    /// Serial numbers of arm and control box, each ended by a zero.
+    /// Serial numbers of arm and control box, each terminated by a zero.
     fn serial_numbers(&self) -> Vec<u8> {
         let mut numbers = self.settings().version.split(',').skip(2);
         let mut text = format!(
@@ -78,7 +80,7 @@ impl Controller {
     }
 }
 
-/// Little-endian floats; those that the bytes do not reach are zero.
+/// Little-endian floats. Floats beyond the end of the bytes are zero.
 fn numbers<const N: usize>(bytes: &[u8]) -> [f32; N] {
     let (words, _) = bytes.as_chunks::<4>();
     std::array::from_fn(|index| words.get(index).map_or(0.0, |word| f32::from_le_bytes(*word)))

@@ -1,4 +1,4 @@
-//! What the robot reports.
+//! Reports of the robot.
 
 use std::f32::consts::PI;
 
@@ -6,12 +6,13 @@ use twintac_rig::xarm::{Report, ReportPort, RobotStatus, RobotWrench};
 
 use super::Controller;
 
-/// Where rich reports say what the arm is, and its limits; fields that the manufacturer's client reads and ours does not.
+/// Offsets in rich reports of the type of the arm and of its limits. The manufacturer's client
+/// reads these fields, that of `twintac-rig` does not.
 const ARM_TYPE: usize = 145;
 const LIMITS: usize = 181;
 
 impl Controller {
-    /// What it reports now.
+    /// The present report.
     #[must_use]
     pub fn report(&self) -> Report {
         let (error, warning) = self.errors();
@@ -56,7 +57,8 @@ impl Controller {
             if let [axes, arm_type, ..] = axes_and_type[..] {
                 frame[ARM_TYPE..ARM_TYPE + 2].copy_from_slice(&[arm_type, axes]);
             }
-            // Jerk, least and most acceleration, least and most speed: of the tool in mm, of the joints in radians.
+            // Jerk, smallest and largest acceleration, smallest and largest speed: of the tool in
+            // mm, of the joints in radians.
             let limits: [f32; 10] = [2000.0, 0.1, 50_000.0, 0.1, 1000.0, 20.0, 0.01, 20.0, 1e-4, PI];
             for (place, limit) in frame[LIMITS..].chunks_exact_mut(4).zip(limits) {
                 place.copy_from_slice(&limit.to_le_bytes());

@@ -12,12 +12,12 @@ use crate::clock::nanoseconds;
 use crate::worker::{Over, Worker, locked};
 use crate::{EmulateError, ScheduledFault, Workcell};
 
-/// How long a thread looks away from whether it should end.
+/// Longest time between two checks whether a thread must end.
 const GLANCE: Duration = Duration::from_millis(10);
-/// How long a client that does not read its reports is put up with.
+/// How long a client that does not read its reports is tolerated.
 const SEND_WITHIN: Duration = Duration::from_millis(200);
 
-/// A robot that listens on the loopback, until it is dropped.
+/// A robot that listens on the loopback until it is dropped.
 #[derive(Debug)]
 pub struct RobotServer {
     controller: Arc<Mutex<Controller>>,
@@ -29,7 +29,8 @@ impl RobotServer {
     /// Opens the robot's sockets.
     ///
     /// # Errors
-    /// A setting or a fault that makes no sense, a port that is taken, no thread.
+    /// A setting or a fault that is not valid; a port that is in use; a thread that cannot be
+    /// started.
     pub fn start(
         workcell: Workcell,
         settings: RobotSettings,
@@ -67,13 +68,13 @@ impl RobotServer {
         })
     }
 
-    /// Where it takes commands.
+    /// Address of its command socket.
     #[must_use]
     pub fn commands(&self) -> SocketAddr {
         self.addresses[0]
     }
 
-    /// Where it reports.
+    /// Address of a report socket.
     #[must_use]
     pub fn reports(&self, port: ReportPort) -> SocketAddr {
         match port {
@@ -83,7 +84,7 @@ impl RobotServer {
         }
     }
 
-    /// A look at the controller; its sockets wait meanwhile.
+    /// Gives access to the controller. Its sockets wait meanwhile.
     pub(crate) fn with_controller<T>(&self, look: impl FnOnce(&mut Controller) -> T) -> T {
         look(&mut locked(&self.controller))
     }
@@ -99,15 +100,15 @@ pub(crate) fn listen(port: u16, what: &'static str) -> Result<(TcpListener, Sock
     opened.map_err(|source| EmulateError::System { what, source })
 }
 
-/// Takes connections for commands, each with a thread of its own.
+/// Accepts connections for commands. Each gets its own thread.
 fn accept(listener: &TcpListener, controller: &Arc<Mutex<Controller>>, over: &Over) {
     let mut connections: Vec<Worker> = Vec::new();
     while !over.is_over() {
         if let Ok((stream, _)) = listener.accept() {
             let controller = Arc::clone(controller);
-            // Without a thread for it the connection ends: the client sees it.
+            // If no thread can be started, the connection ends and the client sees it.
             connections.extend(Worker::start("robot connection", move |over| {
-                // A connection that fails has ended: there is nobody to tell.
+                // A connection that fails has ended. Nobody can be told.
                 let _ = serve(stream, &controller, over);
             }));
         } else {
@@ -117,7 +118,7 @@ fn accept(listener: &TcpListener, controller: &Arc<Mutex<Controller>>, over: &Ov
     }
 }
 
-/// Answers a connection's requests.
+/// Answers the requests of a connection.
 fn serve(mut stream: TcpStream, controller: &Mutex<Controller>, over: &Over) -> std::io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
@@ -138,7 +139,7 @@ fn serve(mut stream: TcpStream, controller: &Mutex<Controller>, over: &Over) -> 
             let response = match splitter.take(&mut chunk) {
                 Ok(Some(frame)) => locked(controller).respond(&frame),
                 Ok(None) => break,
-                Err(_) => return stream.shutdown(Shutdown::Both), // its framing is lost for good
+                Err(_) => return stream.shutdown(Shutdown::Both), // its framing cannot be recovered
             };
             if locked(controller).n_resets() != n_resets {
                 return stream.shutdown(Shutdown::Both);
@@ -154,7 +155,7 @@ fn serve(mut stream: TcpStream, controller: &Mutex<Controller>, over: &Over) -> 
     Ok(())
 }
 
-/// Pushes reports to all who are connected.
+/// Sends reports to all connected clients.
 fn report(
     listener: &TcpListener,
     controller: &Mutex<Controller>,
@@ -186,7 +187,7 @@ fn report(
         };
         if let Some(frame) = frame {
             streams.retain_mut(|stream| stream.write_all(&frame).is_ok());
-            // What could not be reported in time is left out, not made up for.
+            // Reports that could not be sent in time are left out.
             due_ns += period_ns * (clock.now_ns() - due_ns).div_ceil(period_ns).max(1);
         }
         clock.rest_until_ns(due_ns, GLANCE);

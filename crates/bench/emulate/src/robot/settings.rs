@@ -1,4 +1,4 @@
-//! What the robot is like.
+//! Settings of the robot.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -8,40 +8,40 @@ use super::ArmSettings;
 use crate::EmulateError;
 use crate::error::check_positive;
 
-/// The robot and its sockets.
+/// Settings of the robot and its sockets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSettings {
-    /// TCP ports for commands, normal, rich and development reports; 0 for any that is free.
+    /// TCP ports for commands, normal, rich and development reports. 0: any free port.
     pub ports: [u16; 4],
-    /// What it says to be: axes, type, serial numbers of arm and control box, firmware.
+    /// The version text: axes, type, serial numbers of arm and control box, firmware.
     pub version: String,
-    /// Where the tool is at the start.
+    /// Pose of the tool at the start.
     pub first_pose: TcpPose,
-    /// Corners of what the tool can reach, mm.
+    /// Corners of the box that the tool can reach, mm.
     pub reach_mm: [DVec3; 2],
-    /// Farthest that a servo pose may be from the one before, mm.
+    /// Longest step from one servo pose to the next, mm.
     pub max_step_mm: f64,
-    /// How the arm follows.
+    /// How the arm follows its goal.
     pub arm: ArmSettings,
-    /// How often it reports.
+    /// Rates of its reports.
     pub rates: Rates,
 }
 
-/// Reports in a second, Hz.
+/// Reports per second, Hz.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rates {
     /// Of the normal socket.
     pub normal_hz: f64,
-    /// Of the rich one.
+    /// Of the rich socket.
     pub rich_hz: f64,
-    /// Of the development one.
+    /// Of the development socket.
     pub development_hz: f64,
 }
 
 impl Default for Rates {
-    /// The manufacturer's: 5, 5 and 100 a second.
+    /// The rates of the manufacturer: 5, 5 and 100 a second.
     fn default() -> Self {
         Self {
             normal_hz: 5.0,

@@ -1,4 +1,4 @@
-//! The picture of a state.
+//! Draws the picture of a state.
 
 use std::collections::VecDeque;
 
@@ -12,12 +12,12 @@ use twintac_plot::PALETTE;
 use super::DashboardState;
 use super::map::Map;
 
-/// Levels of a trace: eight to a line.
+/// Levels of a trace: eight per line of text.
 const LEVELS: f64 = 800.0;
-/// Columns of a trace's name and value.
+/// Columns of the name and value of a trace.
 const LABEL: u16 = 20;
 
-/// Draws a state. What it shows depends on nothing else.
+/// Draws a state. The picture depends on nothing else.
 pub fn draw(frame: &mut Frame<'_>, state: &DashboardState) {
     let [head, body, foot] =
         Layout::vertical([Constraint::Length(2), Constraint::Fill(1), Constraint::Length(1)])
@@ -117,7 +117,8 @@ fn traces(frame: &mut Frame<'_>, area: Rect, state: &DashboardState) {
     }
 }
 
-/// A trace in so many columns: the largest pressure of each, as a level. A column that has none is empty.
+/// Resamples a trace to a number of columns: the largest pressure of each column as a level. A
+/// column without a pressure is empty.
 fn bars(trace_kpa: &VecDeque<Option<f64>>, columns: usize, scale_kpa: f64) -> Vec<Option<u64>> {
     let n = trace_kpa.len();
     let of_column = |column: usize| {

@@ -1,4 +1,4 @@
-//! The pressure map, two of its pixels a character.
+//! The pressure map, with two pixels in each character.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -8,7 +8,7 @@ use twintac_plot::viridis;
 
 use super::DashboardState;
 
-/// The map of a state, as large as its proportions let it be.
+/// The map of a state, as large as its proportions allow.
 pub(super) struct Map<'a>(pub(super) &'a DashboardState);
 
 impl Widget for Map<'_> {
@@ -16,7 +16,7 @@ impl Widget for Map<'_> {
         let Self(state) = self;
         let rectangle = state.prepared.rectangle();
         let [width_mm, height_mm] = [0, 1].map(|axis| rectangle.max_mm[axis] - rectangle.min_mm[axis]);
-        // A character is as high as two are wide: its halves are the pixels.
+        // A character is twice as high as wide. Its halves are the pixels.
         let pixels = [f64::from(area.width), 2.0 * f64::from(area.height)];
         let per_mm = (pixels[0] / width_mm).min(pixels[1] / height_mm);
         let [width, height] = [per_mm * width_mm, per_mm * height_mm].map(|length| length as u16);
@@ -34,7 +34,7 @@ impl Widget for Map<'_> {
             let along = |at: u16, pixels: u16, cells: usize| {
                 ((f64::from(at) + 0.5) / f64::from(pixels) * cells as f64) as usize
             };
-            let row = grid_rows - 1 - along(pixel, 2 * lines, grid_rows); // y is up
+            let row = grid_rows - 1 - along(pixel, 2 * lines, grid_rows); // y points up
             let pressure_kpa = state.map_kpa[row * grid_columns + along(column, columns, grid_columns)];
             let [red, green, blue] = viridis(pressure_kpa / scale_kpa);
             Color::Rgb(red, green, blue)

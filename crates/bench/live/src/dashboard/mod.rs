@@ -1,6 +1,7 @@
-//! The dashboard: a live pressure map, traces, and how the reading goes.
+//! The dashboard: a live pressure map, traces, and the state of reading.
 //!
-//! [`DashboardState`] is all there is to see, [`draw`] a pure function of it, [`run`] the loop between source, keys and terminal.
+//! [`DashboardState`] is everything that is shown, [`draw`] a pure function of it, and [`run`] the
+//! loop between source, keys and terminal.
 
 mod draw;
 mod map;

@@ -1,4 +1,4 @@
-//! All that the dashboard shows.
+//! Everything that the dashboard shows.
 
 use std::collections::VecDeque;
 
@@ -7,44 +7,45 @@ use twintac_source::{Reading, Tally};
 
 use crate::{About, LiveError, Tare, Taring};
 
-/// Frames that traces go back.
+/// Number of frames that a trace keeps.
 const HISTORY: usize = 600;
 /// Columns and rows of the map.
 const GRID: [usize; 2] = [128, 64];
-/// The Gaussians' width is chosen anew for a touch that is so much stronger than the one that it was chosen for.
+/// Factor by which a touch must be stronger than the one for which the Gaussians' width was chosen,
+/// so that the width is chosen again.
 const STRONGER: f64 = 1.25;
-/// Touches below this say nothing about a width, kPa.
+/// Touches below this pressure are not used to choose a width, kPa.
 const WEAK_KPA: f64 = 0.5;
 
-/// All that the dashboard shows.
+/// Everything that the dashboard shows.
 #[derive(Clone, Debug)]
 pub struct DashboardState {
-    /// What is looked at.
+    /// The sensor.
     pub about: About,
     /// The newest frame.
     pub latest: Option<Reading>,
-    /// Pressure above the tare of each taxel, kPa, the newest at the end.
+    /// Pressure above the tare of each taxel, kPa, the newest last.
     pub traces_kpa: Vec<VecDeque<Option<f64>>>,
-    /// What became of the frames.
+    /// Counts of the frames.
     pub tally: Tally,
-    /// What is being recorded, if anything is.
+    /// The recording in progress, if there is one.
     pub recording: Option<RecordingStatus>,
-    /// What there is to say.
+    /// A message for the user.
     pub message: String,
-    /// The map of [`refresh`](Self::refresh), kPa, over [`prepared`](Self::prepared)'s grid.
+    /// The map of [`refresh`](Self::refresh), kPa, on the grid of [`prepared`](Self::prepared).
     pub map_kpa: Vec<f64>,
-    /// What maps are made with.
+    /// The prepared interpolation of maps.
     pub prepared: PreparedMap,
     tare: Tare,
     taring: Option<Taring>,
-    /// Whether it was said that chips have another temperature than at the tare.
+    /// Whether the user was told that the temperature of chips has changed since the tare.
     was_warned: bool,
-    /// Times of the frames that traces go back, s.
+    /// Times of the frames that the traces keep, s.
     times_s: VecDeque<f64>,
     strongest_kpa: f64,
 }
 
-/// A recording, as it is shown.
+/// A recording in progress, as it is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordingStatus {
     /// Its file.
@@ -54,10 +55,10 @@ pub struct RecordingStatus {
 }
 
 impl DashboardState {
-    /// Nothing was read yet. The first frames make a tare.
+    /// The state before the first frame. The first frames make a tare.
     ///
     /// # Errors
-    /// [`LiveError::Map`]: taxels share a place.
+    /// [`LiveError::Map`]: two taxels have the same position.
     pub fn new(about: About) -> Result<Self, LiveError> {
         let prepared = prepare(&about, &[])?;
         let (n, kpa_per_k) = (about.taxels.len(), about.kpa_per_k.clone());
@@ -98,7 +99,9 @@ impl DashboardState {
         self.latest = Some(reading);
     }
 
-    /// Makes the map of the newest frame, through the taxels that have a reading; NaN if none has. Its width is that which told a touch best taxel by taxel, the strongest touch so far.
+    /// Computes the map of the newest frame from the taxels that have a reading; NaN if none has.
+    /// The width of its Gaussians is chosen by leaving each taxel out in turn, on the strongest
+    /// touch so far.
     ///
     /// # Errors
     /// [`LiveError::Map`].
@@ -129,7 +132,7 @@ impl DashboardState {
         self.traces_kpa.iter().map(newest).collect()
     }
 
-    /// Frames that came in a second, Hz, over the traces.
+    /// Frames per second, Hz, over the time of the traces.
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let (first_s, last_s) = (self.times_s.front()?, self.times_s.back()?);
@@ -144,7 +147,7 @@ impl DashboardState {
         (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
     }
 
-    /// Each taxel's fault by its name, as of the newest frame.
+    /// The name of each taxel's fault in the newest frame.
     #[must_use]
     pub fn faults(&self) -> Vec<Option<&'static str>> {
         let Some(latest) = &self.latest else {
@@ -158,7 +161,7 @@ impl DashboardState {
             .collect()
     }
 
-    /// Where colours and traces end: the largest pressure that is remembered, 1 kPa at least.
+    /// Upper end of colours and traces: the largest pressure in the traces, at least 1 kPa.
     #[must_use]
     pub fn scale_kpa(&self) -> f64 {
         let all = self.traces_kpa.iter().flatten().flatten();

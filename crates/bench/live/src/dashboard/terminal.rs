@@ -17,12 +17,13 @@ const PICTURE: Duration = Duration::from_millis(66);
 /// How long to wait for a frame before looking at the keys again.
 const GLANCE: Duration = Duration::from_millis(10);
 
-/// Shows frames on the terminal until `q` is pressed, the source ends or `stop` is set, as by a signal: the terminal is then as it was before, and a recording
-/// is finished. Recordings go into `folder`.
+/// Shows frames on the terminal until `q` is pressed, the source ends or `stop` is set, for example
+/// by a signal. Then it restores the terminal and finishes a recording. Recordings go into
+/// `folder`.
 ///
 /// # Errors
-/// [`LiveError::Terminal`]: standard output is none, or fails. Those of [`FrameSource::next`]; [`LiveError::Log`] of a recording that was
-/// not finished.
+/// [`LiveError::Terminal`]: standard output is not a terminal, or fails. Those of
+/// [`FrameSource::next`]. [`LiveError::Log`]: a recording could not be finished.
 pub fn run(
     source: &mut FrameSource,
     about: About,
@@ -31,7 +32,7 @@ pub fn run(
 ) -> Result<Tally, LiveError> {
     if !std::io::stdout().is_terminal() {
         return Err(LiveError::Terminal(std::io::Error::other(
-            "standard output is no terminal",
+            "standard output is not a terminal",
         )));
     }
     let state = DashboardState::new(about)?;
@@ -92,13 +93,14 @@ fn show(
             terminal
                 .draw(|frame| draw(frame, &state))
                 .map_err(LiveError::Terminal)?;
-            next_picture = Instant::now() + PICTURE; // however long it took, frames are taken in between
+            next_picture = Instant::now() + PICTURE; // frames are taken between two pictures, however long drawing takes
         }
     }
     Ok(())
 }
 
-/// Begins a recording or ends it, and says how that went: what goes wrong with a file does not end the picture.
+/// Begins or ends a recording, and returns a message. An error of a file does not end the
+/// dashboard.
 fn toggle(recording: &mut Option<TouchRecording>, folder: &Path, about: &About) -> String {
     let result = match recording.take() {
         Some(log) => {

@@ -33,7 +33,7 @@ pub fn reader(faults: &[ScheduledFault]) -> (LabReader, About) {
     (FrameReader::new(phystac, &checked), about)
 }
 
-/// Somebody who knows the scale.
+/// The scale, as a person who knows it would give it.
 pub fn scale(counts_per_pa: u16) -> Known {
     Known {
         counts_per_pa: Some(counts_per_pa),
@@ -41,7 +41,7 @@ pub fn scale(counts_per_pa: u16) -> Known {
     }
 }
 
-/// A sensor that was switched on and found to be like this, whatever its range.
+/// A sensor that was switched on with this conversion, whatever its range.
 pub fn checked(transfer: Transfer) -> PowerOn {
     PowerOn {
         transfer: Some(transfer),
@@ -50,7 +50,7 @@ pub fn checked(transfer: Transfer) -> PowerOn {
     }
 }
 
-/// A barometer that is gone from a time on, s.
+/// A barometer that does not respond from a time on, s.
 pub fn gone(channel: u8, from_s: f64) -> ScheduledFault {
     ScheduledFault {
         what: FaultKind::NoAcknowledge {

@@ -1,31 +1,31 @@
-//! Definitions of messages, as ROS 2 writes them beside its recordings (`ros2msg`).
+//! Definitions of messages, as ROS 2 writes them into its recordings (`ros2msg`).
 //!
-//! Source: ROS 2 documentation, "Interfaces", field types and constants; the MCAP format's registry, "ros2msg": definitions that are used follow each other,
-//! parted by a line of `=`.
+//! Source: ROS 2 documentation, "Interfaces", field types and constants; the MCAP format's
+//! registry, "ros2msg": the definitions of nested messages follow, separated by a line of `=`.
 
 use std::collections::BTreeMap;
 
-/// Deepest and largest message that is read.
+/// Largest nesting depth and size of a message that is read.
 const DEEPEST: usize = 32;
 const MOST_FIELDS: usize = 10_000;
 
-/// What stands before the definition of a message that others are made of.
+/// Text before the name of a nested message.
 const NAME: &str = "MSG: ";
 
-/// What a message, or a part of one, is made of.
+/// The structure of a message or of a part of one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Kind {
     Number(Number),
     Text,
-    /// Fields by name.
+    /// Fields in order, with their names.
     Message(Vec<(String, Self)>),
-    /// So many of a kind.
+    /// A fixed number of elements.
     Array(Box<Self>, usize),
-    /// As many of a kind as the message says.
+    /// A number of elements that the message states.
     Sequence(Box<Self>),
 }
 
-/// How a number is written.
+/// The type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Number {
     I8,
@@ -40,18 +40,18 @@ pub(super) enum Number {
     F64,
 }
 
-/// The texts of all messages that one is made of.
+/// The definitions of a message and its nested messages.
 struct Definitions<'a> {
-    /// Lines by the name of the message, `package/Type`.
+    /// Lines of each message, by its name `package/Type`.
     lines: BTreeMap<String, Vec<&'a str>>,
     n_fields: usize,
 }
 
 impl Kind {
-    /// What a message of the type `name`, such as `std_msgs/msg/String`, is made of.
+    /// The structure of a message of the type `name`, such as `std_msgs/msg/String`.
     ///
     /// # Errors
-    /// What cannot be read, for people.
+    /// A definition that cannot be read, as a text for people.
     pub(super) fn of_message(name: &str, text: &str) -> Result<Self, String> {
         let name = short(name);
         let (mut lines, mut current) = (BTreeMap::<String, Vec<&str>>::new(), name.clone());
@@ -60,7 +60,7 @@ impl Kind {
             if let Some(next) = line.strip_prefix(NAME) {
                 let known = std::mem::replace(&mut current, short(next.trim()));
                 let own = std::mem::take(&mut own);
-                lines.entry(known).or_insert(own); // those that are there twice are the same
+                lines.entry(known).or_insert(own); // definitions that occur twice are the same
             } else if !line.is_empty() && !line.starts_with("===") {
                 own.push(line);
             }
@@ -80,12 +80,14 @@ impl Definitions<'_> {
         for (kind, field) in lines.into_iter().filter_map(field) {
             self.n_fields += 1;
             if depth >= DEEPEST || self.n_fields > MOST_FIELDS {
-                return Err(format!("{name} is made of too many parts"));
+                return Err(format!(
+                    "{name} has too many fields, or they are nested too deeply"
+                ));
             }
             fields.push((field.to_owned(), self.kind(kind, package, depth)?));
         }
         if fields.is_empty() {
-            // ROS 2 writes a byte for a message that says nothing.
+            // ROS 2 writes one byte for a message without fields.
             fields.push((
                 "structure_needs_at_least_one_member".to_owned(),
                 Kind::Number(Number::U8),
@@ -94,7 +96,7 @@ impl Definitions<'_> {
         Ok(Kind::Message(fields))
     }
 
-    /// The kind of a field's type.
+    /// The structure of a field's type.
     fn kind(&mut self, text: &str, package: &str, depth: usize) -> Result<Kind, String> {
         if let Some((element, length)) = text.strip_suffix(']').and_then(|text| text.split_once('[')) {
             let element = Box::new(self.kind(element, package, depth)?);
@@ -102,7 +104,7 @@ impl Definitions<'_> {
             return match length.parse() {
                 _ if is_bounded => Ok(Kind::Sequence(element)),
                 Ok(length) => Ok(Kind::Array(element, length)),
-                Err(_) => Err(format!("`{text}` is no type of a field")),
+                Err(_) => Err(format!("`{text}` is not a type of a field")),
             };
         }
         let number = match text {
@@ -117,7 +119,7 @@ impl Definitions<'_> {
             "float32" => Number::F32,
             "float64" => Number::F64,
             _ if text == "string" || text.starts_with("string<=") => return Ok(Kind::Text),
-            _ if text.starts_with("wstring") => return Err("it has texts of wide characters".to_owned()),
+            _ if text.starts_with("wstring") => return Err("it has strings of wide characters".to_owned()),
             "Header" => return self.message("std_msgs/Header", depth + 1),
             _ if text.contains('/') => return self.message(&short(text), depth + 1),
             _ => return self.message(&format!("{package}/{text}"), depth + 1),
@@ -126,7 +128,7 @@ impl Definitions<'_> {
     }
 }
 
-/// Type and name of the field that a line defines; none of a constant.
+/// Type and name of the field that a line defines. `None` for a constant.
 fn field(line: &str) -> Option<(&str, &str)> {
     let (kind, rest) = line.split_once(char::is_whitespace)?;
     let rest = rest.trim_start();
@@ -139,7 +141,7 @@ fn without_comment(line: &str) -> &str {
     line.split('#').next().unwrap_or_default().trim()
 }
 
-/// `package/Type` of `package/msg/Type`.
+/// The short name `package/Type` of `package/msg/Type`.
 fn short(name: &str) -> String {
     name.replace("/msg/", "/")
 }

@@ -1,4 +1,4 @@
-//! Fields of messages by their names, and the numbers in them.
+//! Numbers in messages, by the names of their fields.
 
 use super::definition::{Kind, Number};
 use crate::cdr::Decoder;
@@ -6,11 +6,13 @@ use crate::cdr::Decoder;
 /// Most names of fields that are listed.
 const MOST_NAMES: usize = 512;
 
-/// Where a number stands: the place of a field in its message, or of an element in its array, from the outside in.
+/// Path to a number: the index of a field in its message, or of an element in its array, from the
+/// outside in.
 pub(super) type Path = Vec<usize>;
 
-/// Where the number of a name is: its path, `wrench.force.z` or `data.0`; or the end of it, `force.z`, if one number alone has it. None if there is none, or more
-/// than one.
+/// The path to the number with a name. The name is its whole path, `wrench.force.z` or `data.0`, or
+/// the end of it, `force.z`, if only one number has this end. `None` if there is no such number or
+/// more than one.
 pub(super) fn find(kind: &Kind, name: &str) -> Option<Path> {
     let parts: Vec<&str> = name.split('.').collect();
     descend(kind, &parts).or_else(|| {
@@ -20,7 +22,7 @@ pub(super) fn find(kind: &Kind, name: &str) -> Option<Path> {
     })
 }
 
-/// Where the number is that has these names from here on.
+/// The path to the number with these names, from here on.
 pub(super) fn descend(kind: &Kind, parts: &[&str]) -> Option<Path> {
     let (first, rest) = match (kind, parts) {
         (Kind::Number(_), []) => return Some(Path::new()),
@@ -41,7 +43,8 @@ pub(super) fn descend(kind: &Kind, parts: &[&str]) -> Option<Path> {
     Some(path)
 }
 
-/// All numbers whose names end so, in messages that are no elements of arrays.
+/// The paths of all numbers whose names end in this way, in messages that are not elements of
+/// arrays.
 fn search(kind: &Kind, parts: &[&str], before: &mut Path, found: &mut Vec<Path>) {
     let Kind::Message(fields) = kind else { return };
     found.extend(descend(kind, parts).map(|path| [before.as_slice(), &path].concat()));
@@ -52,8 +55,8 @@ fn search(kind: &Kind, parts: &[&str], before: &mut Path, found: &mut Vec<Path>)
     }
 }
 
-/// Takes a message apart: the numbers at some paths, each to its place in `numbers`, which stays as it is where there is none. None if the bytes are no such
-/// message.
+/// Decodes a message and puts the numbers at some paths into `numbers`. A number that the message
+/// lacks leaves its entry unchanged. `None` if the bytes are no such message.
 pub(super) fn take(
     kind: &Kind,
     d: &mut Decoder<'_>,
@@ -100,7 +103,7 @@ fn take_elements(
     Some(())
 }
 
-/// What is wanted of one field or element.
+/// The wanted paths within one field or element.
 fn within<'a>(wanted: &[(&'a [usize], usize)], place: usize) -> Vec<(&'a [usize], usize)> {
     let inner = wanted.iter().filter_map(|(path, slot)| match path {
         [first, rest @ ..] if *first == place => Some((rest, *slot)),
@@ -109,7 +112,8 @@ fn within<'a>(wanted: &[(&'a [usize], usize)], place: usize) -> Vec<(&'a [usize]
     inner.collect()
 }
 
-/// The names of a message's numbers but for its header, as many as are listed. None if the bytes are no such message.
+/// The names of a message's numbers except those of its header, at most as many as are listed.
+/// `None` if the bytes are no such message.
 pub(super) fn names(kind: &Kind, d: &mut Decoder<'_>) -> Option<Vec<String>> {
     let mut names = Vec::new();
     add_names(kind, d, "", &mut names)?;
@@ -155,7 +159,7 @@ fn take_number(d: &mut Decoder<'_>, number: Number) -> Option<f64> {
         Number::U16 => f64::from(d.u16()?),
         Number::I32 => f64::from(d.i32()?),
         Number::U32 => f64::from(d.u32()?),
-        Number::I64 => d.i64()? as f64, // beyond 2^53 to the nearest
+        Number::I64 => d.i64()? as f64, // numbers beyond 2^53 are rounded
         Number::U64 => d.u64()? as f64,
         Number::F32 => f64::from(d.f32()?),
         Number::F64 => d.f64()?,
@@ -182,7 +186,7 @@ mod tests {
         Kind::of_message("p/msg/All", TEXT).unwrap()
     }
 
-    /// One with two parts.
+    /// A message with two parts.
     fn message() -> Vec<u8> {
         let mut bytes = Vec::new();
         let e = &mut Encoder::new(&mut bytes);

@@ -1,4 +1,4 @@
-//! What a file is, told from its first bytes.
+//! The format of a file, from its first bytes.
 
 use std::fs::File;
 use std::io::Read;
@@ -6,23 +6,23 @@ use std::path::Path;
 
 use crate::mcap::MAGIC;
 
-/// Bytes that are looked at.
+/// Number of bytes that are read.
 const LOOKED_AT: u64 = 16;
 
-/// What a file is.
+/// The format of a file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Is {
     Mcap,
-    /// A recording that is not read, and what to do.
+    /// A recording in a format that is not read, with advice.
     Other(&'static str),
-    /// No recording of ROS.
+    /// Not a recording of ROS.
     NoBag,
 }
 
-/// What a file is; one that cannot be read is no bag.
+/// The format of a file. A file that cannot be read is not a recording.
 pub(super) fn look(path: &Path) -> Is {
     if path.join("metadata.yaml").is_file() {
-        return Is::Other("is the folder of a bag; give the *.mcap files in it, each is read for itself");
+        return Is::Other("is the folder of a bag; give the *.mcap files in it; each is read on its own");
     }
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut bytes));
@@ -39,10 +39,10 @@ fn of(bytes: &[u8]) -> Is {
     match bytes {
         _ if bytes.starts_with(&MAGIC) => Is::Mcap,
         _ if bytes.starts_with(SQLITE) => Is::Other(
-            "is a bag in SQLite (.db3); `ros2 bag convert -i FILE -o mcap.yaml` makes it MCAP, with `output_bags: [{ uri: converted, storage_id: mcap, all: true }]` in mcap.yaml",
+            "is a bag in SQLite (.db3); `ros2 bag convert -i FILE -o mcap.yaml` converts it to MCAP, with `output_bags: [{ uri: converted, storage_id: mcap, all: true }]` in mcap.yaml",
         ),
         _ if bytes.starts_with(ROS_1) => Is::Other(
-            "is a bag of ROS 1; `rosbags-convert` (of the Python package rosbags) makes it one of ROS 2, in MCAP",
+            "is a bag of ROS 1; `rosbags-convert` (of the Python package rosbags) converts it to a bag of ROS 2, in MCAP",
         ),
         _ if bytes.starts_with(ZSTD) => Is::Other("is compressed as a whole; `zstd -d FILE` unpacks it"),
         _ => Is::NoBag,

@@ -1,4 +1,4 @@
-//! Recordings of ROS 2 that others have made, as columns: for an import description, which says what they mean.
+//! ROS 2 recordings of others as columns. An import description says what the columns mean.
 
 mod definition;
 mod fields;
@@ -17,14 +17,17 @@ use crate::writer::{DESCRIPTION, EXPORTED};
 use first_bytes::{Is, look};
 use topic::{Topic, by_topic};
 
-/// Reads a bag of ROS 2 (MCAP, messages in CDR with definitions `ros2msg`, chunks with zstd, LZ4 or neither), whole or cut: for
-/// [`Import::with_bags`](twintac_recording::Import::with_bags). `columns` are `/topic:field`; a field is a path such as `wrench.force.z` or `data.0`, or the end of
-/// one if one number alone has it: `force.z`. The file is read once, and memory grows with the columns that are asked for.
+/// Reads a ROS 2 bag (MCAP, messages in CDR with definitions `ros2msg`, chunks with zstd, LZ4 or
+/// without compression), complete or cut, for
+/// [`Import::with_bags`](twintac_recording::Import::with_bags). `columns` are `/topic:field`. A
+/// field is a path such as `wrench.force.z` or `data.0`, or the end of a path, such as `force.z`,
+/// if only one number has it. The file is read once, and memory grows with the requested columns.
 ///
-/// None if the file is no recording of ROS.
+/// `None` if the file is no recording of ROS.
 ///
 /// # Errors
-/// [`RecordingError::Bag`]: a recording in another container, or with another compression. [`RecordingError::Read`].
+/// [`RecordingError::Bag`]: a recording in another container, or with another compression.
+/// [`RecordingError::Read`].
 #[must_use]
 pub fn read_bag(path: &Path, columns: &[&str]) -> Option<Result<Bag, RecordingError>> {
     let file = path.display().to_string();
@@ -94,13 +97,15 @@ fn bag(source: impl Read, file: &str, columns: &[&str]) -> Result<Bag, Recording
             }
             Found::End => break,
             Found::Cut => {
-                notes.push("was cut; it is read up to there".to_owned());
+                notes.push("is truncated; it is read up to that point".to_owned());
                 break;
             }
         }
     }
     if n_damaged > 0 {
-        notes.push(format!("is damaged in {n_damaged} places; what is whole is read"));
+        notes.push(format!(
+            "is damaged in {n_damaged} places; only the undamaged messages are read"
+        ));
     }
     let mut bag = Bag {
         topics: Vec::new(),

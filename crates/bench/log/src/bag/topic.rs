@@ -9,32 +9,32 @@ use super::fields::{Path, descend, find, names, take};
 use crate::cdr::Decoder;
 use crate::mcap::Schema;
 
-/// How ROS 2 writes messages, and their definitions.
+/// The encodings of messages and of definitions in ROS 2.
 const MESSAGES: &str = "cdr";
 const DEFINITIONS: &str = "ros2msg";
 
-/// Where messages say when they were measured.
+/// Names of the fields with the time of measurement.
 const STAMPS: [[&str; 2]; 2] = [["header", "stamp"], ["", "stamp"]];
 
 const NS_PER_S: i64 = 1_000_000_000;
 
-/// A topic, and how its messages are taken apart.
+/// A topic, and how its messages are decoded.
 #[derive(Debug)]
 pub(super) struct Topic {
     pub(super) read: BagTopic,
     kind: Option<Kind>,
-    /// Whether anything is asked for.
+    /// Whether any of its fields is requested.
     is_wanted: bool,
-    /// Fields that are asked for and may be there.
+    /// Requested fields that may exist, with their paths.
     wanted: Vec<(String, Path)>,
-    /// Seconds and nanoseconds of the stamp.
+    /// Paths of the seconds and nanoseconds of the time of measurement.
     stamp: Option<[Path; 2]>,
-    /// Messages that are none of their type.
+    /// Number of messages that do not have the structure of their type.
     n_wrong: u64,
 }
 
 impl Topic {
-    /// A topic of which some fields are asked for.
+    /// A topic with the requested fields.
     pub(super) fn new(name: &str, encoding: &str, schema: &Schema, fields: Option<&[&str]>) -> Self {
         let kind = kind(encoding, schema);
         let (kind, problem) = match kind {
@@ -63,7 +63,7 @@ impl Topic {
         }
     }
 
-    /// Takes a message.
+    /// Decodes a message.
     pub(super) fn push(&mut self, log_ns: u64, message: &[u8]) {
         self.read.messages += 1;
         let Some(kind) = &self.kind else { return };
@@ -100,7 +100,7 @@ impl Topic {
         self.read.log_ns.push(i64::try_from(log_ns).unwrap_or(i64::MAX));
     }
 
-    /// The topic without fields that no message has, and what a person should know of it.
+    /// The topic without fields that no message has, and a remark for people.
     pub(super) fn finish(mut self) -> (BagTopic, Option<String>) {
         let is_there = |column: &[f64]| column.iter().any(|number| !number.is_nan());
         let is_named = |field: &str| match &self.read.fields {
@@ -117,7 +117,7 @@ impl Topic {
         } = &self.read;
         let note = (self.n_wrong > 0).then(|| {
             format!(
-                "{} of {messages} messages of {name} are not what their type {kind} says; left out",
+                "{} of {messages} messages of {name} do not match their type {kind} and are left out",
                 self.n_wrong
             )
         });
@@ -125,7 +125,7 @@ impl Topic {
     }
 }
 
-/// What messages are made of, or why they cannot be read.
+/// The structure of the messages, or why they cannot be read.
 fn kind(encoding: &str, schema: &Schema) -> Result<Kind, String> {
     if encoding != MESSAGES {
         return Err(format!(
@@ -144,7 +144,7 @@ fn kind(encoding: &str, schema: &Schema) -> Result<Kind, String> {
     Kind::of_message(&schema.name, &schema.text)
 }
 
-/// Where seconds and nanoseconds of the stamp are.
+/// The paths of seconds and nanoseconds of the time of measurement.
 fn stamp(kind: &Kind) -> Option<[Path; 2]> {
     STAMPS.iter().find_map(|before| {
         let at = |part: &str| {
@@ -155,7 +155,7 @@ fn stamp(kind: &Kind) -> Option<[Path; 2]> {
     })
 }
 
-/// The fields that are asked for of each topic, by its name.
+/// The requested fields of each topic, by its name.
 pub(super) fn by_topic<'a>(columns: &[&'a str]) -> BTreeMap<&'a str, Vec<&'a str>> {
     let mut fields = BTreeMap::<&str, Vec<&str>>::new();
     for (topic, field) in columns.iter().filter_map(|column| column.split_once(':')) {

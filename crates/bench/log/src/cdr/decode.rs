@@ -1,8 +1,9 @@
-//! Bytes in, values out. Nothing is believed: each element asks for its bytes.
+//! Decodes bytes to values. The content is not trusted: each element is checked against the bytes
+//! that are left.
 
 use super::ENCAPSULATION;
 
-/// Takes one message apart; `None` where its bytes end too early or make no sense.
+/// Decodes one message. Returns `None` if its bytes end too early or are not valid.
 pub(crate) struct Decoder<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -14,7 +15,8 @@ impl<'a> Decoder<'a> {
         Some(Self { bytes, at: 0 })
     }
 
-    /// Of programs that set options in the message's first bytes: they say nothing that is needed to read it.
+    /// Decodes a message of another program, which may set options in its first bytes. The options
+    /// are not needed for reading.
     pub(crate) fn of_others(message: &'a [u8]) -> Option<Self> {
         let [first, second, _, _] = ENCAPSULATION;
         match message.split_first_chunk()? {
@@ -77,13 +79,13 @@ impl<'a> Decoder<'a> {
         std::str::from_utf8(text.strip_suffix(&[0])?).ok()
     }
 
-    /// Passes over a text, whatever is in it.
+    /// Skips a text of any content.
     pub(crate) fn skip_text(&mut self) -> Option<()> {
         let length = usize::try_from(self.u32()?).ok()?;
         self.skip(length, 1)
     }
 
-    /// Passes over so many numbers of a size.
+    /// Skips `length` numbers of `size` bytes.
     pub(crate) fn skip(&mut self, length: usize, size: usize) -> Option<()> {
         if length > 0 {
             let end = self
@@ -95,7 +97,7 @@ impl<'a> Decoder<'a> {
         Some(())
     }
 
-    /// A sequence as long as it says, or none: memory grows with the bytes that are there.
+    /// A sequence of the stated length, or `None`. Memory grows only with the bytes that exist.
     pub(crate) fn sequence<T>(&mut self, take: impl Fn(&mut Self) -> Option<T>) -> Option<Vec<T>> {
         let length = self.u32()?;
         let mut elements = Vec::new();

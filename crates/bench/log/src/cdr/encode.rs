@@ -1,4 +1,4 @@
-//! Values in, bytes out.
+//! Encodes values to bytes.
 
 use super::ENCAPSULATION;
 
@@ -47,14 +47,14 @@ impl<'a> Encoder<'a> {
         self.put(number.to_le_bytes());
     }
 
-    /// Length with the terminating zero, text, zero.
+    /// Length including the terminating zero, text, zero.
     pub(crate) fn string(&mut self, text: &str) {
         self.length(text.len() + 1);
         self.bytes.extend(text.as_bytes());
         self.bytes.push(0);
     }
 
-    /// Length, then the elements: no padding follows the length of an empty sequence.
+    /// Length, then the elements. No padding follows the length of an empty sequence.
     pub(crate) fn sequence<T>(
         &mut self,
         elements: impl ExactSizeIterator<Item = T>,
@@ -71,7 +71,8 @@ impl<'a> Encoder<'a> {
     }
 
     fn length(&mut self, length: usize) {
-        // Taxels are few, and names and events do not have 4 GB; a reader takes what does not fit for damage.
+        // Taxels are few, and names and events have less than 4 GB. A longer length is read as
+        // damage.
         self.u32(u32::try_from(length).unwrap_or(u32::MAX));
     }
 }

@@ -10,7 +10,8 @@ fn encoded(put: impl FnOnce(&mut Encoder<'_>)) -> Vec<u8> {
 
 #[test]
 fn golden_bytes() {
-    // std_msgs/Header with the stamp 1 s 2 ns and the frame `ab`, then a double, as a WrenchStamped begins.
+    // A `std_msgs/Header` with the stamp 1 s 2 ns and the frame `ab`, then a double, as at the
+    // start of a WrenchStamped.
     let bytes = encoded(|e| {
         e.i32(1);
         e.u32(2);
@@ -22,7 +23,7 @@ fn golden_bytes() {
         &[1, 0, 0, 0],
         &[2, 0, 0, 0],
         &[3, 0, 0, 0, b'a', b'b', 0],
-        &[0], // to a multiple of eight behind the encapsulation
+        &[0], // padding to a multiple of eight after the encapsulation
         &[0, 0, 0, 0, 0, 0, 0xF0, 0x3F],
     ];
     assert_eq!(bytes, golden.concat());

@@ -2,11 +2,11 @@
 
 use super::record::{Records, op};
 
-/// A chunk in the making: its messages, and where each channel's are.
+/// A chunk that is being filled: its messages, and the offsets of each channel's messages.
 #[derive(Debug)]
 pub(crate) struct Chunk {
     messages: Records,
-    /// Time and place of each message, by channel.
+    /// Time and offset of each message, by channel.
     index: Vec<Vec<(u64, u64)>>,
     /// Times of the first and the last message, ns.
     span_ns: Option<(u64, u64)>,
@@ -34,12 +34,13 @@ impl Chunk {
         self.span_ns
     }
 
-    /// Messages of each channel, by place.
+    /// Number of messages of each channel, by index.
     pub(crate) fn counts(&self) -> impl Iterator<Item = u64> {
         self.index.iter().map(|entries| entries.len() as u64)
     }
 
-    /// Adds a message of the channel at a place; its number in the file is the place plus one.
+    /// Adds a message of the channel with an index. The number of the channel in the file is the
+    /// index plus one.
     pub(crate) fn add(
         &mut self,
         channel: usize,
@@ -60,7 +61,8 @@ impl Chunk {
         self.span_ns = Some((earliest.min(time_ns), latest.max(time_ns)));
     }
 
-    /// Appends the chunk and its index to `out`, which stands at `offset` of the file; the entry that finds it to `found`. Empties it.
+    /// Appends the chunk and its index to `out`, which begins at `offset` of the file, and the
+    /// entry of the chunk in the summary to `found`. Empties the chunk.
     pub(crate) fn finish(&mut self, offset: u64, out: &mut Records, found: &mut Records) {
         let (earliest_ns, latest_ns) = self.span_ns.unwrap_or_default();
         let start = out.bytes.len();
@@ -115,7 +117,8 @@ impl Chunk {
     }
 }
 
-/// Number of the channel or schema at a place: from 1, as 0 means none. Places are bounded by the check of a description.
+/// Number of the channel or schema with an index, counted from 1, because 0 means none. The check
+/// of a description bounds the index.
 pub(crate) fn number(place: usize) -> u16 {
     u16::try_from(place + 1).unwrap_or(u16::MAX)
 }

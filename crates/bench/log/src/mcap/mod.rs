@@ -1,10 +1,12 @@
-//! The container: MCAP. It is written without compression, and read with that of others.
+//! The container MCAP. It is written without compression, and is read with the compression of other
+//! writers.
 //!
-//! Source: the MCAP format specification, <https://mcap.dev/spec>. A file is `magic | records | magic`, a record its kind, its
-//! length and its content. Messages stand in chunks, whose checksum tells whether they are whole.
+//! Source: the MCAP format specification, <https://mcap.dev/spec>. A file is
+//! `magic | records | magic`. A record is its kind, its length and its content. Messages are in
+//! chunks, whose checksum shows whether they are complete.
 //!
-//! Writing here gives the same bytes for the same messages, and one call for each chunk, so that a file that was cut is whole
-//! up to a chunk.
+//! This writer gives the same bytes for the same messages, and makes one write call for each chunk.
+//! A file that was cut is therefore complete up to a chunk.
 
 mod chunk;
 mod record;

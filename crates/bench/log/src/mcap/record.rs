@@ -1,4 +1,4 @@
-//! Records, appended to a buffer.
+//! Records that are appended to a buffer.
 
 use std::collections::BTreeMap;
 
@@ -20,14 +20,14 @@ pub(crate) mod op {
     pub(crate) const DATA_END: u8 = 0x0F;
 }
 
-/// Records one after the other.
+/// A sequence of records.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Records {
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Records {
-    /// Appends a record; its length is filled in when its content is there.
+    /// Appends a record. Its length is filled in after its content is written.
     pub(crate) fn put(&mut self, kind: u8, content: impl FnOnce(&mut Self)) {
         self.bytes.push(kind);
         let length_at = self.bytes.len();
@@ -102,12 +102,12 @@ impl Records {
         });
     }
 
-    /// Four bytes of length, then what has that length.
+    /// Four bytes of length, then content of this length.
     pub(crate) fn sized(&mut self, content: impl FnOnce(&mut Self)) {
         let length_at = self.bytes.len();
         self.u32(0);
         content(self);
-        // No text or index here comes near 4 GB; one that did would be refused when it is read.
+        // No text or index here is near 4 GB. A longer one would be refused by readers.
         let length = u32::try_from(self.bytes.len() - length_at - 4).unwrap_or(u32::MAX);
         self.bytes[length_at..length_at + 4].copy_from_slice(&length.to_le_bytes());
     }

@@ -1,4 +1,4 @@
-//! Records from first to last, as far as the bytes go.
+//! Reads records from first to last, as far as the bytes go.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};
@@ -12,17 +12,19 @@ use super::take::Take;
 use super::unpack::{Unpacked, unpack};
 use super::{MAGIC, op};
 
-/// Largest record that is read; longer ones are damage. Chunks of common writers have a few MB.
+/// Largest record that is read. Longer ones count as damage. Chunks of common writers have a few
+/// MB.
 const LARGEST_RECORD_BYTES: u64 = 64 << 20;
 const FRAMING_BYTES: usize = 9;
 
-/// What is looked at of a record before all of it is read: what stands before the records of a chunk, with the name of a compression.
+/// Number of bytes that are checked before all of a record is read: the header of a chunk, with the
+/// name of a compression.
 const HEADER_BYTES: usize = 44;
 
-/// Something in a file.
+/// Something found in a file.
 #[derive(Debug)]
 pub(crate) enum Found<'a> {
-    /// A channel, how its messages are written, and what they are.
+    /// A channel, the encoding of its messages, and their schema.
     Channel {
         id: u16,
         topic: String,
@@ -34,24 +36,24 @@ pub(crate) enum Found<'a> {
         name: String,
         map: BTreeMap<String, String>,
     },
-    /// A message of a channel, with its number there.
+    /// A message of a channel, with its number in the channel.
     Message {
         channel: u16,
         sequence: u32,
         time_ns: u64,
         data: &'a [u8],
     },
-    /// Something that is not what was written; reading goes on behind it.
+    /// Bytes that differ from what was written. Reading continues after them.
     Damage,
-    /// A chunk that is compressed in a way that is not known, and how.
+    /// A chunk with an unknown compression, and its name.
     Compressed(String),
-    /// The end, with footer and last magic.
+    /// The end, with footer and final magic.
     End,
-    /// The bytes end, or make no sense any more, before the end.
+    /// The bytes end, or are not valid any more, before the end.
     Cut,
 }
 
-/// A record that is taken apart, with its bytes still in the buffer.
+/// A decoded record whose bytes are still in the buffer.
 enum Step {
     Channel {
         id: u16,
@@ -72,43 +74,43 @@ enum Step {
     Nothing,
 }
 
-/// What the messages of a channel are.
+/// The schema of the messages of a channel.
 #[derive(Debug, Default)]
 pub(crate) struct Schema {
     pub(crate) name: String,
-    /// How `text` is written.
+    /// Encoding of `text`.
     pub(crate) encoding: String,
-    /// Empty if it is no text.
+    /// Empty if the schema is not a text.
     pub(crate) text: String,
 }
 
-/// What a file says of its messages as a whole.
+/// Totals of the messages in a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Statistics {
     /// Time of the last message, ns.
     pub(crate) last_ns: u64,
-    /// Messages of each channel.
+    /// Number of messages of each channel.
     pub(crate) counts: BTreeMap<u16, u64>,
 }
 
-/// Reads a file once, from its start. Its memory is bounded by its largest record and its schemas.
+/// Reads a file once, from its start. Its memory is bounded by the largest record and the schemas.
 #[derive(Debug)]
 pub(crate) struct Scanner<R> {
     source: Source<R>,
-    /// The chunk, or the one record outside chunks, that is being read.
+    /// The chunk, or the record outside of chunks, that is being read.
     buffer: Vec<u8>,
-    /// The part of it that is still to be read.
+    /// The part of the buffer that is still to be read.
     rest: Range<usize>,
     schemas: BTreeMap<u16, Arc<Schema>>,
-    /// Whether the data have ended and the summary is read.
+    /// Whether the data have ended and the summary is being read.
     is_in_summary: bool,
-    /// Whether a checksum of the file says that its bytes have changed, wherever that is.
+    /// Whether a checksum of the file shows that its bytes have changed anywhere.
     is_altered: bool,
     statistics: Option<Statistics>,
 }
 
 impl<R: Read> Scanner<R> {
-    /// `None` if the file does not start as one of MCAP.
+    /// `None` if the file does not start like an MCAP file.
     pub(crate) fn open(source: R) -> io::Result<Option<Self>> {
         let (mut source, mut magic) = (Source::new(source), Vec::new());
         source.read(MAGIC.len() as u64, &mut magic)?;
@@ -123,17 +125,17 @@ impl<R: Read> Scanner<R> {
         }))
     }
 
-    /// Whether a checksum of the file says that its bytes have changed; known at [`Found::End`].
+    /// Whether a checksum of the file shows that its bytes have changed. Known at [`Found::End`].
     pub(crate) fn is_altered(&self) -> bool {
         self.is_altered
     }
 
-    /// What the summary says of the messages, if it is there and as it was written; known at [`Found::End`].
+    /// The totals in the summary, if the summary exists and is undamaged. Known at [`Found::End`].
     pub(crate) fn statistics(&self) -> Option<&Statistics> {
         self.statistics.as_ref()
     }
 
-    /// What comes next. Nothing comes after [`Found::End`] and [`Found::Cut`].
+    /// The next item. Nothing follows [`Found::End`] and [`Found::Cut`].
     pub(crate) fn next(&mut self) -> io::Result<Found<'_>> {
         loop {
             if self.rest.is_empty() {
@@ -180,7 +182,7 @@ impl<R: Read> Scanner<R> {
         }
     }
 
-    /// Reads the next record outside chunks; what is in it becomes the rest.
+    /// Reads the next record outside of chunks. Its content becomes the rest.
     fn next_record(&mut self) -> io::Result<Option<Found<'static>>> {
         let before = self.source.checksum();
         self.buffer.clear();
@@ -191,7 +193,8 @@ impl<R: Read> Scanner<R> {
         if kind == op::ATTACHMENT || kind > op::DATA_END {
             return Ok((!self.source.skip(length)?).then_some(Found::Cut));
         }
-        // Some say their length twice: one that is wrong is found before what is behind it is taken for its content.
+        // Some records state their length twice. A wrong length is found here, before the bytes
+        // that follow are taken for the content of the record.
         let header_bytes = length.min(HEADER_BYTES as u64);
         let has_header = self.read(header_bytes)?;
         if has_header && !is_plausible(&self.buffer) {
@@ -216,7 +219,7 @@ impl<R: Read> Scanner<R> {
         Ok(None)
     }
 
-    /// Looks for the next chunk, or the end of the data, behind a record that makes no sense.
+    /// Searches for the next chunk, or the end of the data, after a record that is not valid.
     fn go_to_next_chunk(&mut self) -> io::Result<Option<Found<'static>>> {
         self.is_altered = true;
         let seen = self.buffer.split_off(1);
@@ -225,8 +228,8 @@ impl<R: Read> Scanner<R> {
         Ok(Some(if is_found { Found::Damage } else { Found::Cut }))
     }
 
-    /// Looks behind the footer, which is in the buffer, and compares the checksum of the summary, which covers its first two fields; `before` is
-    /// that before the footer.
+    /// Reads on after the footer, which is in the buffer, and compares the checksum of the summary,
+    /// which covers the footer's first two fields. `before` is the checksum before the footer.
     fn end(&mut self, mut before: Hasher) -> io::Result<Option<Found<'static>>> {
         let (checked, own) = self.buffer.split_at(FRAMING_BYTES + 16);
         before.update(checked);
@@ -243,12 +246,13 @@ impl<R: Read> Scanner<R> {
         }))
     }
 
-    /// Appends bytes to the buffer, which grows with those that come; false if they end before.
+    /// Appends bytes to the buffer, which grows only with bytes that exist. False if they end too
+    /// early.
     fn read(&mut self, length: u64) -> io::Result<bool> {
         self.source.read(length, &mut self.buffer)
     }
 
-    /// Lets the messages of the chunk in the buffer be the rest; `None` if it is damaged.
+    /// Makes the messages of the chunk in the buffer the rest. `None` if the chunk is damaged.
     fn open_chunk(&mut self) -> Option<Option<Found<'static>>> {
         let mut chunk = Take(self.buffer.get(FRAMING_BYTES..)?);
         let (_earliest_ns, _latest_ns, unpacked_bytes) = (chunk.u64()?, chunk.u64()?, chunk.u64()?);
@@ -256,7 +260,7 @@ impl<R: Read> Scanner<R> {
         let compression = chunk.string()?;
         let length = chunk.u64()?;
         let records = chunk.bytes(length)?;
-        // A checksum of 0 stands for none.
+        // A checksum of 0 means that there is none.
         let is_whole = |records: &[u8]| checksum == 0 || checksum == crc32fast::hash(records);
         if compression.is_empty() {
             let end = self.buffer.len() - chunk.0.len();
@@ -274,7 +278,7 @@ impl<R: Read> Scanner<R> {
         }
     }
 
-    /// Takes one record off the rest; `None` if it is damaged.
+    /// Takes one record from the rest. `None` if it is damaged.
     fn step(&mut self) -> Option<Step> {
         let mut rest = Take(self.buffer.get(self.rest.clone())?);
         let kind = rest.u8()?;
@@ -323,13 +327,13 @@ impl<R: Read> Scanner<R> {
     }
 }
 
-/// Kind and length of the record that bytes begin with.
+/// Kind and length of the record at the start of the bytes.
 fn framing(bytes: &[u8]) -> Option<(u8, u64)> {
     let mut framing = Take(bytes);
     Some((framing.u8()?, framing.u64()?))
 }
 
-/// Whether a record can be as long as it says, as far as its first bytes tell.
+/// Whether a record can have its stated length, judged by its first bytes.
 fn is_plausible(bytes: &[u8]) -> bool {
     let Some((kind, length)) = framing(bytes) else {
         return false;
@@ -337,7 +341,7 @@ fn is_plausible(bytes: &[u8]) -> bool {
     let content = Take(&bytes[FRAMING_BYTES..]);
     length <= LARGEST_RECORD_BYTES
         && match kind {
-            0 => false, // such bytes are where a file system has lost what was written
+            0 => false, // a file system leaves zeros where it has lost what was written
             op::CHUNK => chunk_bytes(content) == Some(length),
             op::MESSAGE_INDEX => index_bytes(content) == Some(length),
             op::DATA_END => length == 4,
@@ -347,7 +351,7 @@ fn is_plausible(bytes: &[u8]) -> bool {
         }
 }
 
-/// How long a chunk is, by what stands in it.
+/// Length of a chunk, computed from its header.
 fn chunk_bytes(mut chunk: Take<'_>) -> Option<u64> {
     let (_earliest_ns, _latest_ns, _length, _checksum) =
         (chunk.u64()?, chunk.u64()?, chunk.u64()?, chunk.u32()?);
@@ -355,13 +359,14 @@ fn chunk_bytes(mut chunk: Take<'_>) -> Option<u64> {
     chunk.u64()?.checked_add(40 + compression.len() as u64)
 }
 
-/// How long an index of messages is, by what stands in it.
+/// Length of a message index, computed from its header.
 fn index_bytes(mut index: Take<'_>) -> Option<u64> {
     let (_channel, length) = (index.u16()?, index.u32()?);
     Some(6 + u64::from(length))
 }
 
-/// Whether a checksum is another than that found. One of 0 stands for none.
+/// Whether a stored checksum differs from the computed one. A stored checksum of 0 means that there
+/// is none.
 fn differs(written: Option<u32>, found: u32) -> bool {
     written.is_none_or(|written| written != 0 && written != found)
 }

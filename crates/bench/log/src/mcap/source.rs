@@ -1,15 +1,15 @@
-//! The bytes of a file, first to last, of which some can be looked at again.
+//! The bytes of a file from first to last. Some of them can be read again.
 
 use std::io::{self, Read};
 
-/// Bytes that are asked for at once while something is looked for.
+/// Number of bytes that are read at once during a search.
 const BLOCK_BYTES: u64 = 64 << 10;
 
-/// Reads once, with the checksum of what was read since the last [`Self::begin_section`].
+/// Reads once, and computes the checksum of what was read since the last [`Self::begin_section`].
 #[derive(Debug)]
 pub(super) struct Source<R> {
     inner: R,
-    /// What was given back, and where its rest begins.
+    /// Bytes that were given back, and the index of the first one that is left.
     ahead: Vec<u8>,
     at: usize,
     checksum: crc32fast::Hasher,
@@ -25,7 +25,8 @@ impl<R: Read> Source<R> {
         }
     }
 
-    /// Appends bytes to a buffer, which grows with those that come; false if they end before.
+    /// Appends bytes to a buffer, which grows only with bytes that exist. False if they end too
+    /// early.
     pub(super) fn read(&mut self, length: u64, buffer: &mut Vec<u8>) -> io::Result<bool> {
         let start = buffer.len();
         let waiting = &self.ahead[self.at..];
@@ -38,7 +39,7 @@ impl<R: Read> Source<R> {
         Ok(come as u64 == left)
     }
 
-    /// Passes over bytes; false if they end before.
+    /// Skips bytes. False if they end too early.
     pub(super) fn skip(&mut self, length: u64) -> io::Result<bool> {
         let (mut left, mut block) = (length, Vec::new());
         while left > 0 {
@@ -52,7 +53,7 @@ impl<R: Read> Source<R> {
         Ok(true)
     }
 
-    /// Starts the checksum anew.
+    /// Restarts the checksum.
     pub(super) fn begin_section(&mut self) {
         self.checksum.reset();
     }
@@ -62,8 +63,9 @@ impl<R: Read> Source<R> {
         self.checksum.clone()
     }
 
-    /// Goes on where `is_found` says that something begins, in `seen` or behind it. `is_found` has at least `lookahead` bytes, but at the end of
-    /// the file. False if it is found nowhere.
+    /// Moves to the first position in `seen` or after it at which `is_found` returns true.
+    /// `is_found` gets at least `lookahead` bytes, except at the end of the file. False if there is
+    /// no such position.
     pub(super) fn go_to(
         &mut self,
         seen: Vec<u8>,

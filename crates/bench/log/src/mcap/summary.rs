@@ -1,12 +1,12 @@
-//! The end of a file: what readers find without reading all of it.
+//! The end of a file, where readers find its content without reading all of it.
 
 use super::record::{Records, op};
 use super::{Chunk, MAGIC};
 
-/// What is remembered while a file is written: about 400 bytes a chunk.
+/// What is remembered while a file is written: about 400 bytes per chunk.
 #[derive(Debug)]
 pub(crate) struct Summary {
-    /// Messages of each channel.
+    /// Number of messages of each channel.
     counts: Vec<u64>,
     schemas: u16,
     chunks: u32,
@@ -30,7 +30,7 @@ impl Summary {
         }
     }
 
-    /// Messages in chunks that are finished.
+    /// Number of messages in finished chunks.
     pub(crate) fn messages(&self) -> u64 {
         self.counts.iter().sum()
     }
@@ -44,7 +44,7 @@ impl Summary {
         });
     }
 
-    /// Finishes a chunk into `out`, which stands at `offset` of the file.
+    /// Finishes a chunk into `out`, which begins at `offset` of the file.
     pub(crate) fn add_chunk(&mut self, chunk: &mut Chunk, offset: u64, out: &mut Records) {
         for (count, more) in self.counts.iter_mut().zip(chunk.counts()) {
             *count += more;
@@ -57,8 +57,8 @@ impl Summary {
         chunk.finish(offset, out, &mut self.chunk_indexes);
     }
 
-    /// All that comes behind the last chunk, which ends at `offset`: `checksum` is that of the file so far, `declarations`
-    /// repeat its schemas and channels.
+    /// All bytes after the last chunk, which ends at `offset`. `checksum` is the checksum of the
+    /// file so far; `declarations` repeat its schemas and channels.
     pub(crate) fn close(&self, offset: u64, checksum: u32, declarations: &[(u8, Records)]) -> Vec<u8> {
         let mut out = Records::default();
         out.put(op::DATA_END, |r| r.u32(checksum));
@@ -94,7 +94,7 @@ impl Summary {
             r.u64(offsets_at);
             r.u32(0);
         });
-        // The checksum covers the footer's own first fields.
+        // The checksum covers the first fields of the footer itself.
         let end = out.bytes.len() - 4;
         let checksum = crc32fast::hash(&out.bytes[start..end]);
         out.bytes[end..].copy_from_slice(&checksum.to_le_bytes());

@@ -1,8 +1,8 @@
-//! Records taken apart. Nothing is believed: `None` where bytes end too early.
+//! Decodes records. The content is not trusted: `None` if the bytes end too early.
 
 use std::collections::BTreeMap;
 
-/// What is left of some bytes.
+/// The bytes that are left.
 #[derive(Clone, Copy)]
 pub(super) struct Take<'a>(pub(super) &'a [u8]);
 

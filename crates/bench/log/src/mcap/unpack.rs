@@ -1,23 +1,23 @@
-//! Chunks that other writers have compressed.
+//! Unpacks chunks that other writers have compressed.
 
 use std::io::Read;
 
 use lz4_flex::frame::FrameDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
-/// Largest chunk that is unpacked.
+/// Largest unpacked chunk, bytes.
 const LARGEST_BYTES: u64 = 256 << 20;
 
-/// What came of it.
+/// The result.
 pub(super) enum Unpacked {
-    /// As many bytes as it says.
+    /// The stated number of bytes.
     Whole(Vec<u8>),
     Damaged,
-    /// It is compressed in a way that is not known.
+    /// The compression is unknown.
     Unknown,
 }
 
-/// Unpacks what is compressed with `how`, the name that MCAP has for it, and has `length` bytes.
+/// Unpacks `packed` to `length` bytes. `how` is the name of the compression in MCAP.
 pub(super) fn unpack(how: &str, packed: &[u8], length: u64) -> Unpacked {
     let bytes = match how {
         "zstd" => StreamingDecoder::new(packed)
@@ -29,7 +29,7 @@ pub(super) fn unpack(how: &str, packed: &[u8], length: u64) -> Unpacked {
     bytes.map_or(Unpacked::Damaged, Unpacked::Whole)
 }
 
-/// All bytes, if they are as many as expected. Memory grows with those that come.
+/// All bytes, if their number is as expected. Memory grows only with bytes that exist.
 fn all(decoder: impl Read, length: u64) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let n_most = length.min(LARGEST_BYTES) + 1;

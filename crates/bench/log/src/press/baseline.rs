@@ -1,10 +1,10 @@
-//! What taxels read while nothing touches the gel.
+//! The readings of taxels without contact.
 
 use super::collect::{Collected, Span};
 use crate::{TaxelReading, TaxelState};
 
-/// Pressure of each taxel, Pa: the mean over `window_ns` before a press, as far as no press was on; `None` for a taxel without
-/// a value then.
+/// Pressure of each taxel, Pa: the mean over `window_ns` before a press, without the times of other
+/// presses. `None` for a taxel without a value in this time.
 pub(super) fn baseline_pa(
     collected: &Collected,
     place: usize,
@@ -13,7 +13,7 @@ pub(super) fn baseline_pa(
 ) -> Vec<Option<f64>> {
     let begun_ns = collected.spans[place].from_ns;
     let from_ns = begun_ns.saturating_sub(window_ns);
-    // Presses follow each other: only the last ones can reach into the window.
+    // Presses follow each other, so only the last ones can reach into the window.
     let before = || collected.spans[..place].iter().rev();
     let is_untouched = |time_ns: u64| {
         let is_during = |span: &Span| (span.from_ns..=span.to_ns).contains(&time_ns);

@@ -1,4 +1,4 @@
-//! A log's messages, sorted by what they are.
+//! A log's messages, sorted by kind.
 
 use std::io::Read;
 
@@ -12,26 +12,26 @@ use crate::{
     Body, Description, Event, LogError, LogReader, PoseReading, Stream, TactileFrame, WrenchReading,
 };
 
-/// All that presses are made of.
+/// Everything from which presses are made.
 pub(super) struct Collected {
     /// Times, ns, increasing, with frames.
     pub(super) frames: Vec<(u64, TactileFrame)>,
     /// Force of the indenter on the gel along -z, N.
     pub(super) force_n: Track<f64>,
-    /// Gel from indenter.
+    /// Pose of the indenter in the gel's frame.
     pub(super) poses: Track<Pose>,
     pub(super) spans: Vec<Span>,
     pub(super) remarks: Vec<String>,
 }
 
-/// A press, by its events.
+/// A press, as its events delimit it.
 pub(super) struct Span {
     /// Unique in the log.
     pub(super) name: String,
     pub(super) indenter: String,
     pub(super) control: Control,
     pub(super) from_ns: u64,
-    /// The last time that belongs to it.
+    /// The last time that belongs to the press.
     pub(super) to_ns: u64,
 }
 
@@ -50,7 +50,8 @@ impl Collected {
                 Body::Event(event) => events.push((time_ns, event)),
             }
         }
-        // Streams come from threads of their own: their messages are in order of time, but not all messages.
+        // Each stream comes from its own thread. Within a stream the messages are in order of time,
+        // but the whole log is not.
         frames.sort_by_key(|(time_ns, _)| *time_ns);
         frames.dedup_by_key(|(time_ns, _)| *time_ns);
         events.sort_by_key(|(time_ns, _)| *time_ns);
@@ -66,13 +67,13 @@ impl Collected {
             collected.note(time_ns, event);
         }
         if let Some(open) = collected.open() {
-            let remark = format!("press `{}` was not ended: it goes on to the log's end", open.name);
+            let remark = format!("press `{}` has no end: it lasts to the end of the log", open.name);
             collected.remarks.push(remark);
         }
         Ok(collected)
     }
 
-    /// The press that is not over.
+    /// The press that has not ended.
     fn open(&mut self) -> Option<&mut Span> {
         self.spans.last_mut().filter(|span| span.to_ns == u64::MAX)
     }
@@ -86,7 +87,7 @@ impl Collected {
             } => {
                 if let Some(open) = self.open() {
                     open.to_ns = time_ns.saturating_sub(1);
-                    let remark = format!("press `{}` was not ended before `{name}` began", open.name);
+                    let remark = format!("press `{}` did not end before `{name}` began", open.name);
                     self.remarks.push(remark);
                 }
                 self.spans.push(Span {
@@ -101,7 +102,7 @@ impl Collected {
                 Some(open) => open.to_ns = time_ns,
                 None => self
                     .remarks
-                    .push(format!("press `{name}` ends, but did not begin")),
+                    .push(format!("press `{name}` ends without a beginning")),
             },
             Event::Gap {
                 stream,
@@ -126,7 +127,7 @@ impl Collected {
             Event::Stopped { cause } => {
                 let at_s = time_ns as f64 * 1e-9;
                 self.remarks
-                    .push(format!("the bench stopped at {at_s:.3} s: {cause}"));
+                    .push(format!("the test setup stopped at {at_s:.3} s: {cause}"));
             }
             Event::Tare { .. } | Event::Note { .. } => {}
         }
@@ -142,7 +143,8 @@ impl Collected {
     }
 }
 
-/// Forces along the axis of the description, less the last tare's. Readings that are NaN are missing.
+/// Forces along the axis of the description, after subtracting the last tare. Readings that are NaN
+/// count as missing.
 fn forces(
     wrenches: &[(u64, WrenchReading)],
     events: &[(u64, Event)],
@@ -174,7 +176,7 @@ fn forces(
     forces
 }
 
-/// Where the indenter stands in the gel's frame. Poses that are NaN are missing.
+/// Poses of the indenter in the gel's frame. Poses that are NaN count as missing.
 fn gel_from_indenter(poses: &[(u64, PoseReading)], description: &Description) -> Vec<(u64, Pose, bool)> {
     let gel = &description.base_from_gel;
     let indenter = &description.tool_from_indenter;

@@ -7,7 +7,7 @@ use super::baseline::{baseline_pa, pressure_pa};
 use super::collect::Collected;
 use crate::{Description, TactileFrame, TaxelReading};
 
-/// The press at a place of the log's spans; none if no frame is in it.
+/// The press with an index among the log's presses. `None` if it has no frame.
 pub(super) fn press(
     collected: &Collected,
     description: &Description,
@@ -90,7 +90,7 @@ pub(super) fn press(
         if n_missing > 0 {
             let n_frames = press.time_s.len();
             remarks.push(format!(
-                "press `{}`: taxel `{name}` gave nothing in {n_missing} of {n_frames} frames",
+                "press `{}`: taxel `{name}` has no reading in {n_missing} of {n_frames} frames",
                 span.name
             ));
         }
@@ -108,7 +108,7 @@ fn temperatures_c(frames: &[(u64, TactileFrame)]) -> Option<Vec<Vec<f64>>> {
     rows.iter().flatten().any(|c| !c.is_nan()).then_some(rows)
 }
 
-/// What the taxel gave, in its own unit; NaN if it gave nothing.
+/// The reading of the taxel in its own unit. NaN if there is none.
 fn raw(taxel: &TaxelReading) -> f64 {
     let raw = taxel.counts.map(f64::from).or(taxel.pressure_pa);
     known_or_nan(raw.filter(|raw| raw.is_finite()))

@@ -1,4 +1,4 @@
-//! A log's presses, as a recording.
+//! The presses of a log as a recording.
 
 mod baseline;
 mod collect;
@@ -16,28 +16,32 @@ use collect::Collected;
 
 pub use options::ReadOptions;
 
-/// What a log gave.
+/// The result of reading a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadBack {
     /// The presses.
     pub recording: Recording,
     /// How the log ends.
     pub ending: Ending,
-    /// What a person should know of it: damage, presses left out or not ended, taxels without a baseline or without readings, gaps.
+    /// Remarks for people: damage, presses left out or not ended, taxels without a baseline or
+    /// without readings, gaps.
     pub remarks: Vec<String>,
 }
 
-/// Reads the presses of a log, whole or cut, at the times of its tactile frames (when they were triggered).
+/// Reads the presses of a log, complete or cut, at the times of its tactile frames (when they were
+/// triggered).
 ///
-/// - Force and pose are interpolated linearly (rotations along the shortest arc). Where they cannot be, next to a gap or before
-///   the first reading, the frame's readings are all invalid and force and pose those of the nearest reading.
-/// - `force_n` is the wrench, less the last tare, along [`Description::force_axis`](crate::Description::force_axis); there is
-///   none in a log without wrenches.
-/// - `taxels_raw` are counts, or Pa of a taxel that does not count. `taxels_kpa` are above the mean of the last second before
-///   the press, as far as no other press was on; a taxel without a value then is invalid for the whole press. What is missing is
-///   NaN and invalid.
+/// - Force and pose are interpolated linearly (rotations along the shortest arc). Where this is not
+///   possible, next to a gap or before the first reading, all readings of the frame are invalid,
+///   and force and pose are those of the nearest reading.
+/// - `force_n` is the wrench after subtracting the last tare, along
+///   [`Description::force_axis`](crate::Description::force_axis). A log without wrenches has none.
+/// - `taxels_raw` are counts, or Pa for a taxel without counts. `taxels_kpa` are relative to the
+///   mean of the last second before the press, without the times of other presses. A taxel without
+///   a value in this second is invalid for the whole press. Missing values are NaN and invalid.
 /// - Memory grows with the log: a reading takes about 100 bytes.
-/// - A press that was not ended goes on until the next one begins or the log ends. A name that is there twice gets a number.
+/// - A press that was not ended lasts until the next one begins or the log ends. If a name occurs
+///   twice, the second one gets a number.
 ///
 /// # Errors
 /// A file that cannot be read or is no log; presses without any robot pose.
@@ -46,7 +50,7 @@ pub fn read_presses(path: &Path, options: &ReadOptions) -> Result<ReadBack, LogE
     presses(LogReader::open(path)?, &name, options)
 }
 
-/// As [`read_presses`], from a reader that was opened; `name` is the file's name without folders.
+/// As [`read_presses`], from an open reader. `name` is the file's name without folders.
 ///
 /// # Errors
 /// As [`read_presses`].
@@ -67,11 +71,11 @@ pub fn presses<R: Read>(
     match ending {
         Ending::Whole => {}
         Ending::Damaged => remarks.push(
-            "the log is damaged: its bytes have changed since it was written; where no gap says what is missing, what it says of the sensor or the \
-             bench may be wrong"
+            "the log is damaged: its bytes have changed since it was written; where no gap is marked, its data of the sensor or the \
+             test setup may be wrong"
                 .to_owned(),
         ),
-        Ending::Cut => remarks.push("the log was cut: it has what was flushed before".to_owned()),
+        Ending::Cut => remarks.push("the log is truncated: it has what was flushed before".to_owned()),
     }
     let mut presses = Vec::new();
     for place in 0..collected.spans.len() {

@@ -1,13 +1,15 @@
-//! How a log is read.
+//! Options of reading presses.
 
-/// How a log's streams become presses.
+/// How the streams of a log become presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReadOptions {
-    /// Longest time without force or pose that is interpolated over, ms. Longer ones are gaps, whether the log says so or not.
+    /// Longest time without force or pose over which values are interpolated, ms. Longer times are
+    /// gaps, also if the log has no mark for them.
     ///
-    /// Default 50: more than two of a robot's reports at 100 Hz, and less than a press takes to change much.
+    /// Default 50: longer than two reports of a robot at 100 Hz, and shorter than the time in which
+    /// a press changes much.
     pub longest_interpolated_ms: u64,
-    /// How much of the time before a press its taxels' unloaded baseline is the mean of, ms. Default 1000.
+    /// Time before a press over which its taxels' unloaded baseline is the mean, ms. Default 1000.
     pub baseline_ms: u64,
 }
 

@@ -1,6 +1,6 @@
-//! A quantity over time, known at some moments.
+//! A quantity that is known at some times.
 
-/// Times, ns, increasing, with values; and where what lies between two of them is not known.
+/// Increasing times, ns, with values, and the intervals in which the value is unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Track<T> {
     points: Vec<(u64, T)>,
@@ -8,7 +8,7 @@ pub(super) struct Track<T> {
     is_broken: Vec<bool>,
 }
 
-/// Values between which others can be.
+/// Values that can be interpolated.
 pub(super) trait Interpolate: Copy {
     /// The value at a fraction of the way, from 0 to 1.
     fn between(self, other: Self, fraction: f64) -> Self;
@@ -30,7 +30,8 @@ impl Interpolate for twintac_shape::Pose {
 }
 
 impl<T: Interpolate> Track<T> {
-    /// Points in any order: time, value, and whether readings were lost before it. Of those at one time the first stays.
+    /// Points in any order: time, value, and whether readings were lost before it. Of several
+    /// points at one time the first one is kept.
     pub(super) fn new(mut points: Vec<(u64, T, bool)>, longest_ns: u64) -> Self {
         points.sort_by_key(|(time_ns, ..)| *time_ns);
         points.dedup_by_key(|(time_ns, ..)| *time_ns);
@@ -54,7 +55,8 @@ impl<T: Interpolate> Track<T> {
         self.points.is_empty()
     }
 
-    /// Marks that nothing is known from one time to another, the two among them, but for the points themselves.
+    /// Marks the value as unknown from one time to another, including both, except at the points
+    /// themselves.
     pub(super) fn break_between(&mut self, from_ns: u64, to_ns: u64) {
         let first = self.points.partition_point(|(time_ns, _)| *time_ns < from_ns);
         let behind = self.points.partition_point(|(time_ns, _)| *time_ns <= to_ns);
@@ -63,7 +65,7 @@ impl<T: Interpolate> Track<T> {
         }
     }
 
-    /// The value at a time, if it is known or lies between two that are, without a gap.
+    /// The value at a time, if it is known or lies between two known values without a gap.
     pub(super) fn at(&self, time_ns: u64) -> Option<T> {
         let next = self.points.partition_point(|(at_ns, _)| *at_ns < time_ns);
         let (next_ns, next_value) = *self.points.get(next)?;
@@ -75,7 +77,7 @@ impl<T: Interpolate> Track<T> {
         (!self.is_broken[next]).then(|| before.between(next_value, fraction))
     }
 
-    /// The value that is known nearest to a time.
+    /// The known value that is nearest to a time.
     pub(super) fn nearest(&self, time_ns: u64) -> Option<T> {
         let next = self.points.partition_point(|(at_ns, _)| *at_ns < time_ns);
         let around = self.points.get(next.saturating_sub(1)..)?.iter().take(2);
@@ -128,7 +130,8 @@ mod tests {
     }
 
     proptest! {
-        /// A value is known at points, and between two of them that are near enough and have no gap between them or at their own times.
+        /// A value is known at points, and between two points that are near enough and have no gap
+        /// between them or at their own times.
         #[test]
         fn a_value_is_known_just_where_nothing_is_missing(
             times_ns in prop::collection::btree_set(0..100_u64, 0..20),

@@ -1,4 +1,4 @@
-//! A log that is written while the bench runs.
+//! A log that is written while the test setup runs.
 
 mod recorded;
 mod shared;
@@ -17,20 +17,21 @@ use thread::Command;
 
 pub use recorded::Recorded;
 
-/// Room for events beyond the usual capacity: a press must not lose its end because the disk is slow.
+/// Room for events beyond the usual capacity: the end of a press must not be lost because the disk
+/// is slow.
 const EVENT_ROOM: usize = 256;
 
-/// Writes a log on a thread of its own, so that no disk holds the bench up.
+/// Writes a log on a separate thread, so that a slow disk does not delay the test setup.
 ///
-/// Its memory is bounded: at most `capacity` messages wait, and events have room of their own. What does not fit is refused aloud and
-/// marked in the log as a gap.
+/// Its memory is bounded: at most `capacity` messages wait, and events have additional room. A
+/// message that does not fit is refused with an error and marked in the log as a gap.
 #[derive(Debug)]
 pub struct Recorder {
     sender: LogSender,
     thread: Option<JoinHandle<Result<Recorded, LogError>>>,
 }
 
-/// Hands messages to a [`Recorder`]; copies hand them to the same one.
+/// Hands messages to a [`Recorder`]. Copies hand them to the same recorder.
 #[derive(Clone, Debug)]
 pub struct LogSender {
     commands: SyncSender<Command>,
@@ -40,7 +41,8 @@ pub struct LogSender {
 }
 
 impl Recorder {
-    /// Messages that may wait, where nothing else is known: more than one second of a force sensor at its full 7 kHz.
+    /// Usual number of messages that may wait: more than one second of a force sensor at its full
+    /// rate of 7 kHz.
     pub const USUAL_CAPACITY: usize = 8192;
 
     /// Begins a log at `path`, `<path>.partial` until it is finished.
@@ -81,20 +83,21 @@ impl Recorder {
         })
     }
 
-    /// What hands messages over.
+    /// A sender for this log.
     #[must_use]
     pub fn sender(&self) -> LogSender {
         self.sender.clone()
     }
 
-    /// Writes all that waits, and finishes the log. Its senders are refused from now on.
+    /// Writes all waiting messages and finishes the log. Its senders refuse messages from now on.
     ///
     /// # Errors
-    /// [`LogError::Write`]: the log could not be written to its end; what was flushed before is readable.
+    /// [`LogError::Write`]: the log could not be written to its end. What was flushed before is
+    /// readable.
     pub fn finish(mut self) -> Result<Recorded, LogError> {
         self.close().unwrap_or_else(|| {
             Err(LogError::Stopped {
-                why: "its thread is gone".to_owned(),
+                why: "its thread has ended".to_owned(),
             })
         })
     }
@@ -102,13 +105,13 @@ impl Recorder {
     fn close(&mut self) -> Option<Result<Recorded, LogError>> {
         let thread = self.thread.take()?;
         self.sender.shared.stop("it was finished");
-        // Waits for room. It fails if the thread ended before, which then says why.
+        // Waits for room. Fails if the thread has ended before; its result then says why.
         let _ = self.sender.commands.send(Command::Finish);
         thread.join().ok()
     }
 }
 
-/// Finishes the log as well as it can.
+/// Finishes the log as far as possible.
 impl Drop for Recorder {
     fn drop(&mut self) {
         let _ = self.close();
@@ -119,8 +122,9 @@ impl LogSender {
     /// Hands a message over, and never waits.
     ///
     /// # Errors
-    /// [`LogError::Invalid`]: this message cannot be written; see [`LogWriter::write`]. [`LogError::Behind`]: too many wait, and
-    /// this one is lost; the next may be taken. [`LogError::Stopped`]: none is taken any more.
+    /// [`LogError::Invalid`]: this message cannot be written; see [`LogWriter::write`].
+    /// [`LogError::Behind`]: too many messages wait, and this one is lost; later ones may be
+    /// accepted. [`LogError::Stopped`]: no more messages are accepted.
     pub fn send(&self, message: Message) -> Result<(), LogError> {
         let _running = self.shared.running()?;
         self.accepts.check(&message)?;
@@ -142,12 +146,12 @@ impl LogSender {
                 Err(LogError::Behind { stream, queued })
             }
             Err(TrySendError::Disconnected(_)) => Err(LogError::Stopped {
-                why: "its thread is gone".to_owned(),
+                why: "its thread has ended".to_owned(),
             }),
         }
     }
 
-    /// Messages that wait to be written.
+    /// Number of messages that wait to be written.
     #[must_use]
     pub fn queued(&self) -> usize {
         self.shared.queued()

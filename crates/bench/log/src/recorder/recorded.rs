@@ -1,12 +1,12 @@
-//! What came of a recording.
+//! Result of a recording.
 
-/// What became of a log.
+/// Totals of a finished log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Recorded {
     /// Messages that were written.
     pub messages: u64,
-    /// Messages that were refused because the disk did not keep up; the log has their gaps.
+    /// Messages that were refused because the disk was too slow. The log marks their gaps.
     pub lost: u64,
-    /// Size of the log.
+    /// Size of the log, bytes.
     pub bytes: u64,
 }

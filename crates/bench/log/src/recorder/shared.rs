@@ -1,4 +1,4 @@
-//! What senders and the writing thread know of each other.
+//! State that the senders and the writing thread share.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,7 +8,8 @@ use crate::{Body, Event, LogError, Message, Stream};
 
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// Why no message is taken any more. Who hands one over holds it for reading, so that none slips in behind the last.
+    /// Why no message is accepted any more. A sender holds the lock for reading while it hands a
+    /// message over, so that no message follows the last one.
     stopped: RwLock<Option<String>>,
     queued: AtomicUsize,
     losses: Mutex<BTreeMap<Stream, Loss>>,
@@ -22,7 +23,7 @@ struct Loss {
 }
 
 impl Shared {
-    /// Keeps the log from being stopped while it is held.
+    /// Prevents the log from being stopped while the result is held.
     pub(super) fn running(&self) -> Result<RwLockReadGuard<'_, Option<String>>, LogError> {
         let stopped = self.stopped.read().unwrap_or_else(PoisonError::into_inner);
         match &*stopped {
@@ -31,7 +32,7 @@ impl Shared {
         }
     }
 
-    /// Refuses every message from now on. The first reason stays.
+    /// Refuses every message from now on. The first reason is kept.
     pub(super) fn stop(&self, why: &str) {
         let mut stopped = self.stopped.write().unwrap_or_else(PoisonError::into_inner);
         stopped.get_or_insert_with(|| why.to_owned());
@@ -45,7 +46,7 @@ impl Shared {
             .is_ok()
     }
 
-    /// Gives a place back.
+    /// Releases a place in the queue.
     pub(super) fn release(&self) {
         self.queued.fetch_sub(1, Ordering::Relaxed);
     }
@@ -54,7 +55,7 @@ impl Shared {
         self.queued.load(Ordering::Relaxed)
     }
 
-    /// Remembers a message that was refused.
+    /// Remembers a refused message.
     pub(super) fn lose(&self, stream: Stream, bench_ns: u64) {
         let mut losses = self.losses.lock().unwrap_or_else(PoisonError::into_inner);
         let loss = losses.entry(stream).or_insert(Loss {
@@ -67,7 +68,7 @@ impl Shared {
         loss.last_ns = loss.last_ns.max(bench_ns);
     }
 
-    /// The gaps that were not marked yet, and how many messages they are.
+    /// The gaps that are not marked yet, and their total number of messages.
     pub(super) fn take_gaps(&self) -> (Vec<Message>, u64) {
         let losses = std::mem::take(&mut *self.losses.lock().unwrap_or_else(PoisonError::into_inner));
         let lost = losses.values().map(|loss| loss.messages).sum();

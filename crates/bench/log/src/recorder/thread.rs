@@ -13,7 +13,8 @@ pub(super) enum Command {
     Finish,
 }
 
-/// Writes until told to finish, or until it cannot; then it lets every sender know why.
+/// Writes until it is told to finish or an error occurs. After an error all senders are told the
+/// reason.
 pub(super) fn run<S: Sink>(
     writer: LogWriter<S>,
     commands: &Receiver<Command>,
@@ -37,7 +38,7 @@ fn write_all<S: Sink>(
                 false
             }
             Ok(Command::Finish) | Err(RecvTimeoutError::Disconnected) => true,
-            // Nothing follows that would flush what waits.
+            // No later message would flush the waiting ones.
             Err(RecvTimeoutError::Timeout) => {
                 writer.flush()?;
                 false

@@ -1,15 +1,15 @@
-//! Message definitions as ROS writes them, each with those that it is made of.
+//! Message definitions in the format of ROS, each with the definitions of its nested messages.
 
-/// A schema of the file. Its number there is its place in [`DEFINITIONS`], from 1.
+/// A schema of the file. Its number in the file is its index in [`DEFINITIONS`], counted from 1.
 #[derive(Debug)]
 pub(crate) struct Definition {
-    /// Such as `std_msgs/msg/String`.
+    /// Name, such as `std_msgs/msg/String`.
     pub(crate) name: &'static str,
-    /// Its fields, then those of the messages in it.
+    /// Its fields, then those of its nested messages.
     pub(crate) text: &'static str,
 }
 
-/// What `text` is written in.
+/// The encoding of `text`.
 pub(crate) const SCHEMA_ENCODING: &str = "ros2msg";
 
 macro_rules! with_parts {
@@ -57,10 +57,10 @@ pub(super) const FLUID_PRESSURE: usize = 6;
 pub(super) const TEMPERATURE: usize = 7;
 pub(super) const FLOAT32_MULTI_ARRAY: usize = 8;
 
-/// How many of [`DEFINITIONS`], from the first on, are those of a log.
+/// Number of [`DEFINITIONS`], from the first on, that a log has.
 pub(super) const OF_LOGS: usize = 8;
 
-/// All schemas of files.
+/// All schemas.
 pub(crate) const DEFINITIONS: [Definition; 9] = [
     Definition {
         name: "std_msgs/msg/String",

@@ -1,7 +1,8 @@
-//! What stands in the file for ROS 2 and its friends.
+//! The ROS 2 messages of a file.
 //!
-//! Each reading is there twice: whole, in messages of our own (`sample`), in the units of this project, which is what is read back; and in
-//! the standard messages (`standard`), which every viewer knows, in theirs.
+//! Each reading is written twice: completely, in messages of this project (`sample`), in its units,
+//! which is what is read back; and in the standard messages (`standard`), which every viewer shows,
+//! in their units.
 
 mod definition;
 mod header;
@@ -21,7 +22,7 @@ pub(crate) use topics::{MESSAGE_ENCODING, Topics, stream_of};
 use crate::cdr::Decoder;
 use crate::{Body, Event, Stream};
 
-/// Takes one message of a stream apart; `None` if its bytes are not such a message.
+/// Decodes one message of a stream. `None` if its bytes are no such message.
 pub(crate) fn decode(stream: Stream, bytes: &[u8]) -> Option<Body> {
     let d = &mut Decoder::new(bytes)?;
     match stream {

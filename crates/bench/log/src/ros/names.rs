@@ -1,13 +1,13 @@
-//! What topics are called.
+//! Names of topics.
 
 use std::collections::BTreeSet;
 
 use crate::LogError;
 
-/// What stands for the name of a taxel.
+/// Placeholder for the name of a taxel.
 const TAXEL: &str = "{taxel}";
 
-/// Names of the topics of an exported bag. Those of taxels have `{taxel}` in them.
+/// Names of the topics of an exported bag. Names of topics of taxels contain `{taxel}`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TopicNames {
     pub(super) tactile: String,
@@ -19,7 +19,8 @@ pub struct TopicNames {
 }
 
 impl Default for TopicNames {
-    /// `/tactile`, `/tactile/{taxel}/pressure`, `/tactile/{taxel}/temperature`, `/wrench`, `/robot/pose`, `/events`.
+    /// `/tactile`, `/tactile/{taxel}/pressure`, `/tactile/{taxel}/temperature`, `/wrench`,
+    /// `/robot/pose`, `/events`.
     fn default() -> Self {
         Self {
             tactile: "/tactile".to_owned(),
@@ -33,10 +34,11 @@ impl Default for TopicNames {
 }
 
 impl TopicNames {
-    /// Renames a topic, which is called by what it holds: `tactile`, `pressure`, `temperature`, `wrench`, `pose` or `events`.
+    /// Renames a topic. `topic` is its content: `tactile`, `pressure`, `temperature`, `wrench`,
+    /// `pose` or `events`.
     ///
     /// # Errors
-    /// [`LogError::Invalid`]: there is no such topic, or its name is none that ROS takes.
+    /// [`LogError::Invalid`]: there is no such topic, or its name is not allowed in ROS.
     pub fn rename(&mut self, topic: &str, name: &str) -> Result<(), LogError> {
         let invalid = |problem: String| LogError::Invalid {
             what: "topic",
@@ -51,9 +53,7 @@ impl TopicNames {
             "events" => (&mut self.events, false),
             _ => {
                 let known = "tactile, pressure, temperature, wrench, pose, events";
-                return Err(invalid(format!(
-                    "there is none called `{topic}`; there are {known}"
-                )));
+                return Err(invalid(format!("`{topic}` is unknown; there are {known}")));
             }
         };
         if name.contains(TAXEL) != is_of_taxels {
@@ -62,14 +62,14 @@ impl TopicNames {
         }
         if !is_taken_by_ros(&name.replace(TAXEL, "taxel")) {
             return Err(invalid(format!(
-                "`{name}` is no name of a topic: expected parts of letters, digits and underscores, each after a `/` and none first a digit"
+                "`{name}` is not a name of a topic: expected parts of letters, digits and underscores, each after a `/` and not beginning with a digit"
             )));
         }
         name.clone_into(old);
         Ok(())
     }
 
-    /// Checks that no two topics have one name.
+    /// Checks that no two topics have the same name.
     pub(crate) fn check(&self) -> Result<(), LogError> {
         let all = [
             &self.tactile,
@@ -121,11 +121,11 @@ mod tests {
         names.rename("pressure", "/finger_1/{taxel}").unwrap();
         assert_eq!(names.pressure_of("t3"), "/finger_1/t3");
         for (topic, name, why) in [
-            ("touch", "/touch", "there is none called `touch`"),
-            ("wrench", "wrench", "`wrench` is no name"),
-            ("wrench", "/a//b", "is no name"),
-            ("wrench", "/1st", "is no name"),
-            ("wrench", "/", "is no name"),
+            ("touch", "/touch", "`touch` is unknown"),
+            ("wrench", "wrench", "`wrench` is not a name"),
+            ("wrench", "/a//b", "is not a name"),
+            ("wrench", "/1st", "is not a name"),
+            ("wrench", "/", "is not a name"),
             ("wrench", "/{taxel}", "has no"),
             ("pressure", "/pressure", "needs"),
         ] {

@@ -1,4 +1,5 @@
-//! Readings whole, in messages of our own: what is read back is what was written, bit for bit.
+//! Complete readings in messages of this project. They are read back bit for bit as they were
+//! written.
 
 use glam::{DQuat, DVec3};
 

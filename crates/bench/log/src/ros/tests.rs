@@ -5,7 +5,7 @@ use super::*;
 use crate::cdr::Encoder;
 use crate::{PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 
-/// What a message becomes, channel by channel.
+/// The encoded messages of one message, channel by channel.
 fn written(body: &Body) -> Vec<(usize, Vec<u8>)> {
     let mut messages = Vec::new();
     Topics::new(&["S0".to_owned()]).each(3 * NS_PER_S + 4, body, |channel, put| {

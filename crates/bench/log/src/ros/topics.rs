@@ -1,4 +1,4 @@
-//! The channels of a file, and what of a message goes to which.
+//! The channels of a file, and the parts of a message that go to each.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::{sample, standard};
 use crate::cdr::Encoder;
 use crate::{Body, Stream};
 
-/// What messages are written in.
+/// The encoding of messages.
 pub(crate) const MESSAGE_ENCODING: &str = "cdr";
 
 const EVENTS: usize = 0;
@@ -31,7 +31,7 @@ const FIXED: [(&str, usize); FIRST_TAXEL] = [
     ("/robot/pose", POSE_STAMPED),
 ];
 
-/// The stream that a channel holds, if it is one that is read back.
+/// The stream of a channel, if the channel is read back.
 pub(crate) fn stream_of(topic: &str, schema: &str) -> Option<Stream> {
     let is_ours = |index: usize| {
         let (name, definition) = FIXED[index];
@@ -44,15 +44,15 @@ pub(crate) fn stream_of(topic: &str, schema: &str) -> Option<Stream> {
         .map(|place| Stream::ALL[place])
 }
 
-/// The channels of a file, by place.
+/// The channels of a file, by index.
 #[derive(Debug)]
 pub(crate) struct Topics {
-    /// Name and place of the schema in [`DEFINITIONS`].
+    /// Topic, and index of the schema in [`DEFINITIONS`].
     pub(crate) channels: Vec<(String, usize)>,
-    /// Schemas that the file has.
+    /// Schemas of the file.
     pub(crate) definitions: &'static [Definition],
     taxels: Vec<String>,
-    /// Of a file with standard messages alone: what the array of all pressures is called.
+    /// For a file with standard messages only: the label of the array of all pressures.
     label: Option<String>,
 }
 
@@ -75,7 +75,7 @@ impl Topics {
         }
     }
 
-    /// Those of a file with standard messages alone.
+    /// The channels of a file with standard messages only.
     pub(crate) fn standard(taxels: &[String], names: &TopicNames) -> Self {
         let label = format!("pressure_pa: {}", taxels.join(", "));
         let taxels = ros_names(taxels);
@@ -97,12 +97,13 @@ impl Topics {
         }
     }
 
-    /// The place of a taxel's pressure, behind which its temperature is.
+    /// The index of a taxel's pressure channel. Its temperature channel follows.
     fn of_taxel(&self, index: usize) -> usize {
         self.channels.len() - 2 * (self.taxels.len() - index)
     }
 
-    /// Hands each message that is to be written to `put`: the place of its channel, and what encodes it.
+    /// Calls `put` for each message to be written, with the index of its channel and the function
+    /// that encodes it.
     pub(crate) fn each(
         &self,
         unix_ns: u64,
@@ -147,7 +148,7 @@ impl Topics {
                 put(standard, &|e| standard::put_pose(e, unix_ns, reading));
             }
             Body::Event(event) => {
-                // Finite numbers and texts are always JSON.
+                // Finite numbers and texts can always be JSON.
                 let text = serde_json::to_string(event).unwrap_or_default();
                 put(EVENTS, &|e| e.string(&text));
             }
@@ -155,7 +156,8 @@ impl Topics {
     }
 }
 
-/// Names that ROS takes in a topic: letters, digits and underscores, none first a digit, none twice.
+/// Names that ROS allows in a topic: letters, digits and underscores, without a digit in first
+/// place and without duplicates.
 fn ros_names(names: &[String]) -> Vec<String> {
     let mut taken = BTreeSet::from(["frame".to_owned()]);
     let fresh = |(index, name): (usize, &String)| {

@@ -1,4 +1,4 @@
-//! Bags of somebody else, written by the format's own library.
+//! Bags that another program wrote, made here with the format's own library.
 
 #![allow(clippy::unwrap_used, dead_code)] // helpers of several tests
 
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use twintac_log::read_bag;
 use twintac_recording::{Import, ImportSummary, Recording, RecordingError};
 
-/// When bags begin, ns since 1970.
+/// Start of the bags, ns since 1970.
 pub(crate) const START_NS: u64 = 1_700_000_000_000_000_000;
 
 pub(crate) const MS: u64 = 1_000_000;
@@ -23,7 +23,7 @@ pub(crate) const ARRAY: &str = "MultiArrayLayout layout\nfloat32[] data\n\
     ================================================================================\n\
     MSG: std_msgs/MultiArrayDimension\nstring label\nuint32 size\nuint32 stride\n";
 
-/// A definition with the header that many messages have.
+/// A definition with a header, as many messages have.
 pub(crate) fn stamped(fields: &str) -> String {
     format!(
         "std_msgs/Header header\n{fields}\
@@ -93,11 +93,11 @@ impl Cdr {
     }
 
     fn message(self) -> Vec<u8> {
-        [vec![0, 1, 0, 3], self.0].concat() // some write how many bytes they added behind
+        [vec![0, 1, 0, 3], self.0].concat() // some writers state how many padding bytes they added
     }
 }
 
-/// A bag in the making.
+/// A bag that is being made.
 pub(crate) struct Made {
     writer: Writer<Cursor<Vec<u8>>>,
     channels: BTreeMap<String, (u16, u32)>,
@@ -160,13 +160,13 @@ impl Made {
         self.writer.into_inner().into_inner()
     }
 
-    /// In a folder of its own.
+    /// The bag as a file in its own folder.
     pub(crate) fn file(self) -> InFolder {
         InFolder::new("bag.mcap", &self.bytes())
     }
 }
 
-/// A file in a folder of its own.
+/// A file in its own folder.
 pub(crate) struct InFolder {
     folder: TempDir,
     name: String,
@@ -186,12 +186,12 @@ impl InFolder {
         self.folder.path().join(&self.name)
     }
 
-    /// Reads it as a description says.
+    /// Imports it with a description.
     pub(crate) fn import(&self, description: &str) -> Result<(Recording, ImportSummary), RecordingError> {
         import(&self.path(), description)
     }
 
-    /// The error of reading it.
+    /// The error of importing it.
     pub(crate) fn problem(&self, description: &str) -> String {
         self.import(description).unwrap_err().to_string()
     }
@@ -203,7 +203,7 @@ pub(crate) fn import(path: &Path, description: &str) -> Result<(Recording, Impor
         .read_csv(path)
 }
 
-/// Fails unless a text has all the words.
+/// Fails unless a text contains all the words.
 pub(crate) fn has(text: &str, words: &[&str]) {
     for word in words {
         assert!(text.contains(word), "no `{word}` in: {text}");

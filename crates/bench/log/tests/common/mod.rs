@@ -1,4 +1,4 @@
-//! A bench that is made up: the same messages whenever it is asked.
+//! An invented test setup: it always gives the same messages.
 
 #![allow(clippy::unwrap_used, dead_code)] // helpers of several tests
 
@@ -30,7 +30,7 @@ pub(crate) fn description(taxels: usize) -> Description {
             position_mm: DVec3::new(300.0, 20.0, 50.0),
             rotation: DQuat::IDENTITY,
         },
-        // A tool that points down carries an indenter whose z is up.
+        // The tool points down. The z axis of its indenter points up.
         tool_from_indenter: Pose {
             position_mm: DVec3::new(0.0, 0.0, 40.0),
             rotation: DQuat::from_rotation_x(std::f64::consts::PI),
@@ -82,7 +82,7 @@ pub(crate) fn wrench(time_ns: u64, force_n: f64) -> Message {
     }
 }
 
-/// The tip at a height over the gel's frame, over its origin.
+/// The tip at a height above the origin of the gel's frame.
 pub(crate) fn pose(time_ns: u64, height_mm: f64) -> Message {
     Message {
         bench_ns: time_ns,
@@ -115,7 +115,7 @@ pub(crate) fn ended(name: &str) -> Event {
     }
 }
 
-/// Streams at their rates, Hz, in order of time.
+/// Streams with their rates, Hz, in order of time.
 pub(crate) fn bench(seconds: u64, taxels: usize, [tactile_hz, wrench_hz, pose_hz]: [u64; 3]) -> Vec<Message> {
     let times = |hz: u64, at: u64| (0..seconds * hz).map(move |step| step * NS_PER_S / hz + at);
     let mut messages: Vec<Message> = times(tactile_hz, 3)
@@ -132,7 +132,7 @@ pub(crate) fn bench(seconds: u64, taxels: usize, [tactile_hz, wrench_hz, pose_hz
     messages
 }
 
-/// A whole log in memory.
+/// A complete log in memory.
 pub(crate) fn log(description: &Description, messages: &[Message]) -> Vec<u8> {
     let mut writer = LogWriter::new(Vec::new(), description).unwrap();
     for message in messages {

@@ -1,17 +1,17 @@
-// As much of Arduino's core as the sketch needs, over a pipe: each call is a line on standard output; what it gives comes as a line on
-// standard input. Who holds the other ends has the bus, the clock and the serial port.
+// The part of Arduino's core that the sketch needs, over a pipe: each call is a line on standard output, and its result is a line on
+// standard input. The process at the other ends has the bus, the clock and the serial port.
 #pragma once
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
-// Asks, and gives the first number of the answer.
+// Sends a call and returns the first number of its result.
 inline long asked(const char *form, long number) {
   printf(form, number);
   fflush(stdout);
   char answer[64];
-  if (!fgets(answer, sizeof answer, stdin)) exit(0); // nobody is there any more
+  if (!fgets(answer, sizeof answer, stdin)) exit(0); // the other process has ended
   return strtol(answer, nullptr, 10);
 }
 

@@ -1,4 +1,4 @@
-// As much of Arduino's Wire as the sketch needs, over the same pipe.
+// The part of Arduino's Wire that the sketch needs, over the same pipe.
 #pragma once
 #include "Arduino.h"
 

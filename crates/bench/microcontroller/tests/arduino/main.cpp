@@ -1,4 +1,4 @@
-// The sketch as a program: `setup` once, `loop` until nobody listens.
+// The sketch as a program: `setup` once, `loop` until the other process ends.
 #include "Arduino.h"
 #include SKETCH
 int main() {

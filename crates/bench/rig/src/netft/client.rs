@@ -10,11 +10,12 @@ use crate::{Device, RigError, Wrench};
 /// Requests are never acknowledged: one that shows no effect is sent again.
 #[derive(Clone, Copy, Debug)]
 struct Patience {
-    /// How often it is sent at most.
+    /// Most times that a request is sent.
     most_tries: u32,
-    /// How long after a request to start the first record may come.
+    /// Longest time from a request to start to the first record.
     start: Duration,
-    /// How long after a request for a bias the records that it is judged by may take.
+    /// Longest time from a request for a bias to the end of the records by which the bias is
+    /// checked.
     bias: Duration,
 }
 
@@ -24,14 +25,14 @@ const PATIENCE: Patience = Patience {
     bias: Duration::from_secs(1),
 };
 const PAGE_WITHIN: Duration = Duration::from_secs(2);
-/// Time after which a bias shows in the records that arrive.
+/// Time until the records that arrive show the effect of a bias.
 const BIAS_SETTLES: Duration = Duration::from_millis(20);
-/// Records that a bias is judged by.
+/// Number of records by which a bias is checked.
 const BIAS_RECORDS: usize = 50;
 /// Largest datagram that UDP can carry.
 const LARGEST_DATAGRAM: usize = 65_536;
 
-/// What the mean of the records after a bias may read.
+/// Largest mean of the records after a bias that is accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BiasTolerance {
     /// Along each axis, N.
@@ -40,7 +41,8 @@ pub struct BiasTolerance {
     pub torque_n_mm: f64,
 }
 
-/// A connection to a sensor. It streams to one client only, and is stopped when the client is dropped.
+/// A connection to a sensor. The sensor streams to one client only. Dropping the client stops the
+/// stream.
 #[derive(Debug)]
 pub struct Client {
     socket: UdpSocket,
@@ -66,7 +68,8 @@ impl Client {
         })
     }
 
-    /// Waits for so long before a request is sent again or given up; by default 0.2 s for the start, and 1 s for a bias.
+    /// Sets how long the client waits before it sends a request again or gives up. Default: 0.2 s
+    /// for the start, and 1 s for a bias.
     pub fn set_patience(&mut self, patience: Duration) {
         (self.patience.start, self.patience.bias) = (patience, patience);
     }
@@ -85,10 +88,12 @@ impl Client {
         &self.configuration
     }
 
-    /// Starts streaming, several records in a datagram if `buffered`. The first datagram is taken as the answer, and not given out.
+    /// Starts the stream, with several records in a datagram if `buffered`. The first datagram is
+    /// taken as the answer and is not returned.
     ///
     /// # Errors
-    /// No record after ten requests; an error in the first one's status.
+    /// Fails if no record arrives after ten requests, or if the status of the first record has an
+    /// error.
     pub fn start(&mut self, buffered: bool) -> Result<(), RigError> {
         let command = if buffered {
             Command::StartBuffered
@@ -111,11 +116,12 @@ impl Client {
         })
     }
 
-    /// Counts the present load as zero, and makes sure on the records that the sensor does; it must be streaming. Returns what the mean
-    /// of the records then reads.
+    /// Counts the present load as zero and checks on the following records that the sensor does so.
+    /// The sensor must be streaming. Returns the mean wrench of those records.
     ///
     /// # Errors
-    /// A mean beyond the tolerance after ten requests; silence; an error in a record's status.
+    /// Fails if the mean is beyond the tolerance after ten requests, if the sensor is silent, or if
+    /// the status of a record has an error.
     pub fn bias(&mut self, tolerance: &BiasTolerance) -> Result<Wrench, RigError> {
         let mut mean = Wrench::ZERO;
         let most_tries = self.patience.most_tries;
@@ -137,10 +143,10 @@ impl Client {
         })
     }
 
-    /// Stops streaming, and throws away what is still under way.
+    /// Stops the stream and discards datagrams that are still under way.
     ///
     /// # Errors
-    /// A sensor that streams on after ten requests.
+    /// Fails if the sensor still streams after ten requests.
     pub fn stop(&mut self) -> Result<(), RigError> {
         let most_tries = self.patience.most_tries;
         for _ in 0..most_tries {
@@ -153,12 +159,12 @@ impl Client {
             }
         }
         Err(RigError::ForceSensor {
-            problem: format!("it streams on after {most_tries} requests to stop"),
-            hint: "another client may have started it: the sensor serves one only",
+            problem: format!("it still streams after {most_tries} requests to stop"),
+            hint: "another client may have started it: the sensor serves one client only",
         })
     }
 
-    /// The records of the next datagram; none if nothing arrives in time.
+    /// The records of the next datagram. Empty if nothing arrives in time.
     ///
     /// # Errors
     /// A datagram that holds no records, a socket that cannot be read from.
@@ -182,7 +188,7 @@ impl Client {
             .map_err(|source| transport("sending a request", source))
     }
 
-    /// Mean of the records that arrive after a while.
+    /// Mean of the records that arrive after the time `settles`.
     fn mean_after(&mut self, settles: Duration) -> Result<Wrench, RigError> {
         let asked = Instant::now();
         let (mut sum, mut n_records) = (Wrench::ZERO, 0);
@@ -215,12 +221,12 @@ impl Client {
 
 impl Drop for Client {
     fn drop(&mut self) {
-        // Nothing can be done about a sensor that cannot be reached any more.
+        // If the sensor cannot be reached any more, nothing can be done.
         let _ = self.send(Command::Stop);
     }
 }
 
-/// An error, unless the record's readings can be trusted.
+/// An error if the readings of the record cannot be trusted.
 fn trusted(record: &Record) -> Result<(), RigError> {
     match record.status.health() {
         Health::Healthy | Health::Warning => Ok(()),

@@ -1,4 +1,4 @@
-//! The client against a sensor on this machine's loopback.
+//! The client against a sensor on the loopback of this computer.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener};
@@ -22,16 +22,17 @@ fn configuration() -> Configuration {
     }
 }
 
-/// What a sensor on the loopback does with its requests and records.
+/// How the sensor on the loopback treats requests and records.
 #[derive(Clone, Copy)]
 struct Habits {
-    /// Requests to start and to bias of which it only hears the last.
+    /// Number of requests to start and to bias that the sensor ignores before it carries one out.
     deaf: u32,
-    /// Numbers of the record that it leaves out, of the one that it sends twice, and of the one after which it counts anew.
+    /// Number of the record that is left out, of the one that is sent twice, and of the one after
+    /// which the counting restarts.
     lost: Option<u32>,
     doubled: Option<u32>,
     last: Option<u32>,
-    /// Records that it sends at most: as many as fit into the socket of a client that is held up.
+    /// Most records that it sends. This many fit into the socket of a client that is delayed.
     most: u32,
     status: Status,
 }
@@ -45,7 +46,7 @@ const WELL: Habits = Habits {
     status: Status::HEALTHY,
 };
 
-/// Streams 2 N along z until it is told to stop, and is stopped for good by a datagram of its own.
+/// Streams 2 N along z until it receives a stop request. A special datagram ends the sensor.
 fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     let address = socket.local_addr().unwrap();
@@ -94,7 +95,7 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
             }
             let _ = socket.send_to(&encode_records(&records), client);
         }
-        // What was sent before the end, however late this thread is.
+        // Datagrams that were sent before the end are still read, however late this thread is.
         let mut bytes = [0; 64];
         while let Ok((size, _)) = socket.recv_from(&mut bytes) {
             heard.push(Request::decode(&bytes[..size]).unwrap().command);
@@ -108,10 +109,10 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
     (address, stop)
 }
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
 
-/// A client that waits for as long as a busy machine may take.
+/// A client that waits as long as a busy machine may need.
 fn connected(address: SocketAddr) -> Client {
     let mut client = Client::connect(address, configuration()).unwrap();
     client.set_patience(LATEST);
@@ -133,7 +134,7 @@ fn requests_that_get_lost_are_repeated_until_the_data_show_them() {
     let mean = client.bias(&TOLERANCE).unwrap();
     assert!(mean.force_n.length() < 1e-12 && (mean.torque_n_mm.z - 1.0).abs() < 1e-9);
     client.stop().unwrap();
-    // A thread that is held up may have sent its last datagram after that.
+    // A thread that was delayed may have sent its last datagram after that.
     let is_silent = (0..1000).any(|_| client.receive(Duration::from_millis(20)).unwrap().is_empty());
     assert!(is_silent);
     let heard = stop();
@@ -228,7 +229,7 @@ fn a_stream_that_begins_anew_is_an_error() {
     client.start(true).unwrap();
     let mut source = NetFtSource::new(client, BenchClock::start());
     let error = (0..40).find_map(|_| source.next_sample(LATEST).err());
-    assert!(error.unwrap().to_string().contains("its stream began anew"));
+    assert!(error.unwrap().to_string().contains("its stream started again"));
     stop();
 }
 

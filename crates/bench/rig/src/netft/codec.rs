@@ -1,6 +1,7 @@
 //! Requests and records of the raw data transfer (RDT), all big-endian.
 //!
-//! Source: ATI Industrial Automation, Network Force/Torque Sensor System, manual 9620-05-NET FT, section 10.
+//! Source: ATI Industrial Automation, Network Force/Torque Sensor System, manual 9620-05-NET FT,
+//! section 10.
 
 use super::Status;
 use crate::{Device, RigError};
@@ -36,18 +37,18 @@ pub enum Command {
 pub struct Request {
     /// What it asks for.
     pub command: Command,
-    /// Records to send; 0 for streaming until stopped.
+    /// Number of records to send. 0: stream until a stop request.
     pub samples: u32,
 }
 
 /// One reading of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// Number of the record since the request, from 1; wraps.
+    /// Number of the record since the request, counted from 1. The counter wraps around.
     pub rdt_sequence: u32,
-    /// Ticks of the sensor's own clock since power-up, 7000 in a second; wraps.
+    /// Ticks of the sensor's own clock since power-up, 7000 per second. The counter wraps around.
     pub ft_sequence: u32,
-    /// How the sensor is.
+    /// Status of the sensor.
     pub status: Status,
     /// Fx, Fy, Fz, Tx, Ty, Tz in counts.
     pub counts: [i32; 6],

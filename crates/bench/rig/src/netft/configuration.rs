@@ -1,4 +1,4 @@
-//! The sensor's configuration page: what its counts mean.
+//! The sensor's configuration page: the meaning of its counts.
 
 use std::fmt::Write;
 
@@ -10,20 +10,20 @@ use crate::{RigError, Wrench};
 /// Path of the page on the sensor's web server.
 pub const PAGE: &str = "/netftapi2.xml";
 
-/// What the sensor says about its records.
+/// What the configuration page states about the records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
-    /// Counts in a unit of force; `cfgcpf`.
+    /// Counts per unit of force (`cfgcpf`).
     pub counts_per_force: f64,
-    /// Counts in a unit of torque; `cfgcpt`.
+    /// Counts per unit of torque (`cfgcpt`).
     pub counts_per_torque: f64,
-    /// The unit of force, such as `N`; `scfgfu`.
+    /// Unit of force, such as `N` (`scfgfu`).
     pub force_unit: String,
-    /// The unit of torque, such as `Nm`; `scfgtu`.
+    /// Unit of torque, such as `Nm` (`scfgtu`).
     pub torque_unit: String,
-    /// The product's name, if it says one; `prodname`.
+    /// Name of the product, if the page has it (`prodname`).
     pub product: Option<String>,
-    /// Records in a second, if it says so, Hz; `comrdtrate`.
+    /// Records per second, Hz, if the page has it (`comrdtrate`).
     pub rate_hz: Option<f64>,
 }
 
@@ -31,7 +31,8 @@ impl Configuration {
     /// Reads the page; `file` names it in errors.
     ///
     /// # Errors
-    /// Text that is not the page, an element that is missing, a number that cannot be read or is not above zero, an unknown unit.
+    /// Text that is not the page, an element that is missing, a number that cannot be read or is
+    /// not above zero, an unknown unit.
     pub fn parse(file: &str, text: &str) -> Result<Self, RigError> {
         let document = roxmltree::Document::parse(text)
             .map_err(|found| RigError::file(file, format!("is not XML: {found}")))?;
@@ -86,14 +87,14 @@ impl Configuration {
             if known.is_none() {
                 return Err(RigError::file(
                     file,
-                    format!("`{name}` is `{unit}`, which is no unit known"),
+                    format!("`{name}` is `{unit}`, which is not a known unit"),
                 ));
             }
         }
         Ok(configuration)
     }
 
-    /// The page that says this.
+    /// The XML page with this configuration.
     #[must_use]
     pub fn to_xml(&self) -> String {
         let rate = self.rate_hz.map(|rate_hz| rate_hz.to_string());
@@ -108,7 +109,7 @@ impl Configuration {
         ] {
             if let Some(value) = value {
                 let value = value.replace('&', "&amp;").replace('<', "&lt;");
-                let _ = writeln!(text, "<{name}>{value}</{name}>"); // a String takes whatever is written
+                let _ = writeln!(text, "<{name}>{value}</{name}>"); // writing to a String cannot fail
             }
         }
         text + "</netFTApi>\n"
@@ -124,16 +125,17 @@ impl Configuration {
         }
     }
 
-    /// The counts of a wrench, rounded, and held where they would overflow.
+    /// The counts of a wrench, rounded and clamped to the range of 32 bits.
     #[must_use]
     pub fn counts(&self, wrench: &Wrench) -> [i32; 6] {
         let force = wrench.force_n / self.newtons_per_count();
         let torque = wrench.torque_n_mm / self.newton_millimetres_per_count();
-        // A cast of a float holds at the ends of an integer's range.
+        // A cast from a float clamps to the range of the integer.
         [force.x, force.y, force.z, torque.x, torque.y, torque.z].map(|count| count.round() as i32)
     }
 
-    // Units are known: `parse` checks them; a configuration made by hand with another one reads NaN.
+    // `parse` checks the units. A configuration that was made by hand with an unknown unit gives
+    // NaN.
     fn newtons_per_count(&self) -> f64 {
         newtons(&self.force_unit).unwrap_or(f64::NAN) / self.counts_per_force
     }
@@ -186,7 +188,7 @@ mod tests {
             (
                 ">Nm<",
                 ">stone<",
-                "page: `scfgtu` is `stone`, which is no unit known",
+                "page: `scfgtu` is `stone`, which is not a known unit",
             ),
             ("</netFTApi>", "", "page: is not XML"),
         ] {

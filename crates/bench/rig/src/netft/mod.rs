@@ -1,4 +1,5 @@
-//! ATI Net F/T: a force/torque sensor that streams records by UDP (RDT) and tells its configuration by HTTP.
+//! ATI Net F/T: a force/torque sensor that streams records by UDP (RDT, raw data transfer) and
+//! gives its configuration by HTTP.
 
 mod client;
 mod codec;

@@ -1,11 +1,11 @@
-//! Fetches the configuration page.
+//! Reads the configuration page over HTTP.
 
 use std::time::Duration;
 
 use super::{Configuration, PAGE};
 use crate::{Device, RigError};
 
-/// Largest page that is read, bytes; the sensor's has a few thousand.
+/// Largest page that is read, bytes. The sensor's page has a few thousand bytes.
 const LARGEST_PAGE: u64 = 64 * 1024;
 
 /// Reads the configuration from a sensor's web server, `host` or `host:port`.
@@ -14,7 +14,7 @@ pub(super) fn fetch(host: &str, within: Duration) -> Result<Configuration, RigEr
     let agent = ureq::Agent::new_with_config(
         ureq::Agent::config_builder()
             .timeout_global(Some(within))
-            .proxy(None) // the sensor is on the bench's own wire
+            .proxy(None) // the sensor is on the local network of the test setup
             .max_redirects(0)
             .build(),
     );

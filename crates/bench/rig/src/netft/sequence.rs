@@ -5,28 +5,30 @@ use std::fmt;
 
 use super::Record;
 
-/// Ticks of the sensor's clock in a second.
+/// Ticks of the sensor's clock per second.
 pub const TICKS_PER_SECOND: f64 = 7000.0;
-/// Ticks beyond which a record is not late any more: the sensor was started anew.
+/// A record that is older than the newest one by more than this many ticks does not count as late:
+/// the sensor was restarted.
 const LATEST_TICKS: i32 = 7000;
-/// Gaps that are remembered, for telling late records from doubled ones.
+/// Most gaps that are remembered, to tell late records from duplicates.
 const MOST_GAPS: usize = 64;
 
 /// How a record arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// As the next one.
+    /// As the next record.
     InOrder,
-    /// After others that are missing so far.
+    /// After a gap: records before it are missing so far.
     AfterGap {
         /// How many are missing.
         lost: u32,
     },
-    /// After later ones; it was counted as lost and is not any more.
+    /// After later records. It was counted as lost, and is now counted as late.
     Late,
-    /// For the second time.
+    /// As a duplicate.
     Doubled,
-    /// As the first of another stream: the sensor was started again, or switched off and on.
+    /// As the first record of another stream: the stream was started again, or the sensor was
+    /// switched off and on.
     Restarted,
 }
 
@@ -35,11 +37,12 @@ pub enum Arrival {
 pub struct Tracked {
     /// How it arrived.
     pub arrival: Arrival,
-    /// When it was measured, on the sensor's own clock, s since power-up; goes on where the counter wraps.
+    /// When it was measured, on the sensor's own clock, s since power-up. The time stays continuous
+    /// when the counter wraps around.
     pub time_s: f64,
 }
 
-/// What became of a stream's records.
+/// Counts of a stream's records by how they arrived.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SequenceReport {
     /// Records that arrived, each counted once.
@@ -48,11 +51,11 @@ pub struct SequenceReport {
     pub lost: u64,
     /// Records that arrived after later ones.
     pub late: u64,
-    /// Records that arrived again.
+    /// Duplicates that arrived.
     pub doubled: u64,
-    /// Times the stream began anew.
+    /// How many times the stream restarted.
     pub restarts: u64,
-    /// Most records missing in a row, when the gap was found.
+    /// Longest gap: most records that were missing in a row when the gap was found.
     pub longest_gap: u32,
 }
 
@@ -81,8 +84,9 @@ struct Gap {
 
 /// Follows the two counters of a stream's records.
 ///
-/// The two tell apart what one alone cannot: a record that is late or doubled is older on both, the first record of
-/// another stream on one only, or by far.
+/// Both counters together tell apart cases that one counter cannot. A late or duplicate record is
+/// older by both counters. The first record of another stream is older by one counter only, or by a
+/// large amount.
 #[derive(Clone, Debug, Default)]
 pub struct SequenceTracker {
     newest: Option<Newest>,
@@ -91,7 +95,7 @@ pub struct SequenceTracker {
 }
 
 impl SequenceTracker {
-    /// Takes note of a record.
+    /// Classifies a record and counts it.
     pub fn track(&mut self, record: &Record) -> Tracked {
         let fresh = Newest {
             rdt_sequence: record.rdt_sequence,
@@ -130,7 +134,7 @@ impl SequenceTracker {
         }
     }
 
-    /// What became of the records so far.
+    /// The counts so far.
     #[must_use]
     pub fn report(&self) -> SequenceReport {
         self.report
@@ -154,7 +158,8 @@ impl SequenceTracker {
         self.gaps.push_back(gap);
     }
 
-    /// Fills the gap that a record belongs to, if it belongs to one.
+    /// Takes the record out of the gap to which it belongs. It is late if there is such a gap, else
+    /// a duplicate.
     fn behind(&mut self, rdt_sequence: u32) -> Arrival {
         let within = |gap: &Gap| rdt_sequence.wrapping_sub(gap.first) < gap.count;
         let Some(index) = self.gaps.iter().position(within) else {
@@ -191,7 +196,7 @@ mod tests {
     use super::*;
     use crate::netft::Status;
 
-    /// The n-th record of a stream at a tenth of the sensor's rate.
+    /// Record number `number` of a stream at a tenth of the sensor's rate.
     fn record(first: u32, number: u32) -> Record {
         Record {
             rdt_sequence: first.wrapping_add(number),
@@ -268,13 +273,15 @@ mod tests {
     }
 
     proptest! {
-        /// However a stream is thinned out, shuffled and doubled, each record is counted as what it is.
+        /// Records are dropped, shuffled and duplicated at random: each record is counted in the
+        /// right class.
         #[test]
         fn counts_add_up(
             first in any::<u32>(),
             fates in prop::collection::vec((0..10_u8, 0..8_u32), 1..300),
         ) {
-            // The first record arrives first: what comes before it belongs to no stream yet.
+            // The first record arrives first, because a record before it would belong to no stream
+            // yet.
             let mut sent = vec![(0, 0)];
             for (number, (fate, delay)) in (1_u32..).zip(fates) {
                 if fate > 0 {

@@ -1,4 +1,4 @@
-//! What the sensor says about itself.
+//! Status bits of the sensor.
 
 use std::fmt;
 
@@ -14,13 +14,13 @@ pub struct Status(
 pub enum Health {
     /// Readings can be trusted.
     Healthy,
-    /// Readings can be trusted; a monitor condition is latched.
+    /// Readings can be trusted. A monitor condition is latched.
     Warning,
     /// Readings cannot be trusted.
     Error,
 }
 
-/// Set whenever another bit is.
+/// Summary bit: set whenever another bit is set.
 const SUMMARY: u32 = 0x8000_0000;
 const MONITOR_LATCHED: u32 = 0x0001_0000;
 
@@ -70,7 +70,8 @@ impl Status {
         }
     }
 
-    /// Names of the bits that are set, the gravest first; bits without a meaning that is known have none.
+    /// Names of the bits that are set, most severe first. Bits without a known meaning have no
+    /// name.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         NAMES
             .into_iter()
@@ -117,7 +118,8 @@ mod tests {
         );
         assert_eq!(Status(0).to_string(), "0x00000000");
         assert_eq!(Status(2).names().collect::<Vec<_>>(), ["HTTP"]);
-        // One name for each bit but the summary, 0x8000 and 0x0001, which the sensor does not use.
+        // Each bit has one name, except the summary, 0x8000 and 0x0001, which the sensor does not
+        // use.
         assert_eq!(Status(u32::MAX).names().count(), 29);
     }
 }

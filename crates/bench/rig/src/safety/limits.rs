@@ -1,11 +1,12 @@
-//! How far a press may go.
+//! Limits of a press.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{RigError, TcpPose};
 
-/// What a sensor stands, from its description. A bench can set lower limits, never higher ones.
+/// The loads that a sensor can bear, from its description. A test setup can set lower limits, never
+/// higher ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorLimits {
@@ -15,19 +16,19 @@ pub struct SensorLimits {
     pub depth_mm: f64,
 }
 
-/// The limits of a bench.
+/// The limits of a test setup.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
-    /// Largest force, whatever its direction, N.
+    /// Largest force in any direction, N.
     pub force_n: f64,
     /// Largest depth of the tool's centre point below the surface, along the approach, mm.
     pub depth_mm: f64,
     /// Where the tool's centre point may be.
     pub workspace: Workspace,
-    /// Longest way from one pose to the next, mm.
+    /// Longest step from one pose to the next, mm.
     pub step_mm: f64,
-    /// Largest turn from one pose to the next, radians.
+    /// Largest rotation from one pose to the next, radians.
     pub turn_step_rad: f64,
     /// Largest speed, mm/s.
     pub speed_mm_per_s: f64,
@@ -43,23 +44,23 @@ pub struct Workspace {
     pub max_mm: DVec3,
 }
 
-/// How to go back after a stop.
+/// How to move back after a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Retreat {
-    /// How far against the approach, mm; 0 for staying where it stopped.
+    /// Distance against the approach direction, mm. 0: stay at the position of the stop.
     pub distance_mm: f64,
-    /// How fast, mm/s.
+    /// Speed, mm/s.
     pub speed_mm_per_s: f64,
-    /// By how much the force may seem to rise without rising, N: a few times the noise of one reading.
+    /// Force increase that counts as noise, N: a few times the noise of one reading.
     pub force_noise_n: f64,
 }
 
-/// What a supervisor is set up with.
+/// Settings of a supervisor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setup {
-    /// The bench's limits.
+    /// The limits of the test setup.
     pub limits: Limits,
     /// A point of the sensor's surface in the robot's base frame, mm. Depths are counted from it.
     pub surface_mm: DVec3,
@@ -71,12 +72,12 @@ pub struct Setup {
     pub force_silence_s: f64,
     /// Longest silence of the robot's reports, s.
     pub robot_silence_s: f64,
-    /// How to go back after a stop.
+    /// How to move back after a stop.
     pub retreat: Retreat,
 }
 
 impl Workspace {
-    /// Whether a position is inside, to within a tolerance in mm; NaN is not.
+    /// Whether a position is inside, within a tolerance in mm. NaN is not inside.
     #[must_use]
     pub fn contains(&self, position_mm: DVec3, tolerance_mm: f64) -> bool {
         position_mm.cmpge(self.min_mm - tolerance_mm).all()
@@ -85,12 +86,13 @@ impl Workspace {
 }
 
 impl Setup {
-    /// Depth below the surface, mm; negative above it. The approach must have length one.
+    /// Depth below the surface, mm, negative above it. The approach must be a unit vector.
     pub(super) fn depth_mm(&self, position_mm: DVec3) -> f64 {
         (position_mm - self.surface_mm).dot(self.approach)
     }
 
-    /// The setup with an approach of length one, if it makes sense for a sensor and from where the robot is.
+    /// The setup with the approach as a unit vector, if the setup is valid for the sensor and for
+    /// the present pose of the robot.
     pub(super) fn checked(mut self, sensor: &SensorLimits, start: &TcpPose) -> Result<Self, RigError> {
         let limits = &self.limits;
         for (limit, asked, allowed, unit) in [

@@ -1,4 +1,4 @@
-//! The safety supervisor: says in each servo period whether the next pose may go out.
+//! The safety supervisor: decides in each servo period whether the next pose may be sent.
 
 mod cause;
 mod limits;

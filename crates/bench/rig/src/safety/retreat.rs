@@ -1,31 +1,32 @@
-//! Straight back up after a stop, while that is safe.
+//! The straight way back up after a stop, while that is safe.
 
 use glam::DVec3;
 
 use super::Setup;
 use crate::TcpPose;
 
-/// How far a retreat has got.
+/// State of a retreat.
 #[derive(Clone, Debug)]
 pub(super) enum Progress {
-    /// Not begun; the force of the period before, N.
+    /// Not begun. Holds the force of the period before, N.
     Waiting { force_before_n: Option<f64> },
     /// Under way.
     Moving {
-        /// The pose last let through.
+        /// The last pose that was released.
         last: TcpPose,
-        /// Way left, mm.
+        /// Remaining distance, mm.
         left_mm: f64,
         /// The smallest force since the beginning, N.
         lowest_force_n: f64,
     },
-    /// Over, or given up: what became unsafe once stays so.
+    /// Finished or given up. A retreat that became unsafe once is not resumed.
     Ended,
 }
 
 impl Progress {
-    /// The next pose, if going back is safe: whether the force sensor is alive, and the robot is alive and without error. `robot` is a
-    /// pose that the robot is at, or nearer to the sensor than.
+    /// The next pose, if moving back is safe. `is_safe`: the force sensor is alive, and the robot
+    /// is alive and without error. `robot` is the robot's pose or a pose that is farther from the
+    /// sensor.
     pub(super) fn next(
         &mut self,
         setup: &Setup,
@@ -62,7 +63,8 @@ impl Progress {
         let step_mm = (setup.retreat.speed_mm_per_s * setup.servo_period_s)
             .min(setup.limits.step_mm)
             .min(left_mm);
-        // Never towards the sensor: neither from the pose before, nor from where the robot may be.
+        // The step never goes towards the sensor, neither from the last pose nor from the position
+        // where the robot may be.
         let ahead_mm = (last.position_mm - robot.position_mm).dot(setup.approach);
         let position_mm: DVec3 = last.position_mm - setup.approach * (step_mm + ahead_mm.max(0.0));
         if step_mm <= 0.0 || !setup.limits.workspace.contains(position_mm, 0.0) {

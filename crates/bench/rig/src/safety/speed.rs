@@ -1,7 +1,8 @@
-//! Keeps a path's speed below a limit, however unevenly its poses come.
+//! Keeps the speed along a path below a limit, also if its poses come at uneven times.
 
-/// A way that may be gone: it fills up with time at the greatest speed, up to that of two servo periods, and each step
-/// uses it up. A loop that is late in one period and early in the next keeps its pace; one that hurries does not gain.
+/// A distance budget. It fills with time at the largest allowed speed, up to the distance of two
+/// servo periods, and each step takes its length from it. A loop that is late in one period and
+/// early in the next keeps its speed. A loop that is always early gains nothing.
 #[derive(Clone, Debug)]
 pub(super) struct SpeedBudget {
     speed_mm_per_s: f64,
@@ -21,7 +22,8 @@ impl SpeedBudget {
         }
     }
 
-    /// Uses up a step, unless it is longer than what is left: its speed is then told, mm/s.
+    /// Takes a step from the budget. If the step is longer than the budget, returns its speed as
+    /// the error, mm/s.
     pub(super) fn spend(&mut self, step_mm: f64, now_s: f64) -> Result<(), f64> {
         let elapsed_s = (now_s - self.counted_s).clamp(0.0, self.longest_s);
         self.counted_s = now_s;
@@ -42,7 +44,7 @@ mod tests {
 
     #[test]
     fn an_uneven_loop_keeps_its_pace_and_a_hurrying_one_does_not() {
-        // 100 mm/s at 250 Hz: 0.4 mm a period.
+        // 100 mm/s at 250 Hz: 0.4 mm per period.
         let mut budget = SpeedBudget::new(100.0, 0.004, 0.0);
         let mut now_s = 0.0;
         for turn in 0..1000 {

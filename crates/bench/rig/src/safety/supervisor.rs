@@ -8,10 +8,11 @@ use super::watchdog::Watchdog;
 use super::{Cause, SensorLimits, Setup, StreamId};
 use crate::{RigError, TcpPose};
 
-/// By how much a measured position may be beyond a limit that the goals keep, mm: robots overshoot, and round.
+/// Tolerance of a measured position beyond a limit of the goals, mm, because robots overshoot and
+/// round.
 const TRACKING_TOLERANCE_MM: f64 = 0.1;
 
-/// What the supervisor is told between servo periods.
+/// An event that the supervisor is told of between servo periods.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Observation {
     /// The force sensor's reading, N, in any frame.
@@ -54,22 +55,23 @@ pub enum Decision {
     Retreat(TcpPose),
 }
 
-/// Where a press starts.
+/// State at the start of a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// Time on the bench's clock, s.
+    /// Time on the bench clock, s.
     pub now_s: f64,
-    /// Where the robot reports to be.
+    /// The pose that the robot reports.
     pub pose: TcpPose,
     /// What the force sensor reads, N.
     pub force_n: DVec3,
 }
 
-/// Watches one press.
+/// Supervises one press.
 ///
-/// It does nothing by itself and knows no clock: it is told what devices say and when, and asked once in each servo
-/// period. The first cause to stop is latched: no goal goes out any more, by this call or by any later one. To go on, a
-/// person looks at the bench and a new supervisor is made.
+/// It does nothing by itself and has no clock: the caller reports what the devices say and when,
+/// and asks for one decision in each servo period. The first cause to stop is latched: neither this
+/// call nor a later one releases a goal. To go on, a person must look at the test setup, and a new
+/// supervisor must be made.
 ///
 /// ```
 /// use glam::DVec3;
@@ -119,11 +121,11 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// Starts watching a press on a sensor.
+    /// Starts to supervise a press on a sensor.
     ///
     /// # Errors
-    /// [`RigError::LimitRaised`] for a limit above the sensor's own; [`RigError::Setup`] for a setup that makes no sense, or
-    /// that the robot's position contradicts.
+    /// [`RigError::LimitRaised`] for a limit above the sensor's own. [`RigError::Setup`] for a
+    /// setup that is not valid, or that contradicts the robot's position.
     pub fn new(setup: Setup, sensor: &SensorLimits, start: Start) -> Result<Self, RigError> {
         let setup = setup.checked(sensor, &start.pose)?;
         let mut watchdog = Watchdog::default();
@@ -144,7 +146,7 @@ impl Supervisor {
         Ok(supervisor)
     }
 
-    /// Watches one more stream, which must be heard from at least this often, s.
+    /// Watches one more stream. Its longest allowed silence is `longest_silence_s`, s.
     pub fn watch(&mut self, name: &str, longest_silence_s: f64, now_s: f64) -> StreamId {
         self.watchdog.watch(name, longest_silence_s, now_s)
     }
@@ -155,9 +157,10 @@ impl Supervisor {
         self.cause.as_ref()
     }
 
-    /// Takes note of an event; the cause to stop, if there is one by now, so that nobody has to wait for the next period.
+    /// Takes note of an event. Returns the cause to stop if there is one by now, so that the caller
+    /// need not wait for the next period.
     pub fn observe(&mut self, now_s: f64, event: Observation) -> Option<&Cause> {
-        // First the silence that this event ends.
+        // The silence that this event ends is checked first.
         self.latch(self.watchdog.silent(now_s));
         let cause = match event {
             Observation::Force(force_n) => {
@@ -200,10 +203,11 @@ impl Supervisor {
         self.cause()
     }
 
-    /// Decides whether a goal may go out in this servo period.
+    /// Decides whether a goal may be sent in this servo period.
     ///
-    /// The period in which a cause appears says [`Decision::Stop`]. Those after it may say [`Decision::Retreat`], as long as the
-    /// force sensor is alive and does not rise, and the robot is alive, without error and inside its workspace.
+    /// In the period in which a cause appears the decision is [`Decision::Stop`]. In later periods
+    /// it may be [`Decision::Retreat`], as long as the force sensor is alive, its force does not
+    /// rise, and the robot is alive, without error and inside its workspace.
     pub fn decide(&mut self, now_s: f64, goal: &TcpPose) -> Decision {
         let was_stopped = self.cause.is_some();
         self.latch(self.watchdog.silent(now_s));
@@ -228,8 +232,8 @@ impl Supervisor {
         }
     }
 
-    /// Whether a way back would be watched: force sensor and robot are alive, and the robot is without error. If not, there is nothing to
-    /// wait for.
+    /// Whether a retreat could be supervised: the force sensor and the robot are alive, and the
+    /// robot has no error. If not, there is nothing to wait for.
     #[must_use]
     pub fn can_retreat(&self, now_s: f64) -> bool {
         self.watchdog.is_alive(StreamId::FORCE, now_s)
@@ -238,8 +242,10 @@ impl Supervisor {
             && self.measured.is_finite()
     }
 
-    /// The last goal, as far from the sensor as it is itself or the robot is measured, whichever is farther: a report is old when it
-    /// arrives, and the robot may have gone up since. A robot that lags behind is not called back sideways.
+    /// The last goal or, if the measured pose is farther from the sensor, the last goal moved back
+    /// to that distance. The measured pose alone does not suffice: a report is old when it arrives,
+    /// and the robot may have moved up since. The goal's sideways position is kept, so that a robot
+    /// that lags behind does not move sideways.
     fn farthest(&self) -> TcpPose {
         let depth_mm = |pose: &TcpPose| self.setup.depth_mm(pose.position_mm);
         let farther_mm = (depth_mm(&self.goal) - depth_mm(&self.measured)).max(0.0);
@@ -281,7 +287,8 @@ impl Supervisor {
         })
     }
 
-    /// What is wrong with a position: its depth, or that it is outside the workspace.
+    /// What is wrong with a position: its depth is beyond the limit, or it is outside the
+    /// workspace.
     fn place(&self, names: [&'static str; 2], position_mm: DVec3, tolerance_mm: f64) -> Option<Cause> {
         let limits = &self.setup.limits;
         if !limits.workspace.contains(position_mm, tolerance_mm) {
@@ -295,7 +302,7 @@ impl Supervisor {
     }
 }
 
-/// Beyond a limit, as is what is no number.
+/// The cause if `found` is beyond a limit. NaN is beyond every limit.
 fn limit(limit: &'static str, found: f64, allowed: f64, unit: &'static str) -> Option<Cause> {
     let is_kept = found <= allowed;
     (!is_kept).then_some(Cause::LimitExceeded {

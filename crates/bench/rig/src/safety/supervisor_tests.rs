@@ -55,7 +55,7 @@ fn supervisor() -> Supervisor {
     Supervisor::new(setup(), &SENSOR, start()).unwrap()
 }
 
-/// A press in which the robot follows at once, with both sensors heard in each period.
+/// A press in which the robot follows at once. Both sensors report in each period.
 struct Bench {
     supervisor: Supervisor,
     now_s: f64,
@@ -106,7 +106,8 @@ fn too_much_force_stops_in_the_same_call_and_then_goes_straight_up() {
     assert_eq!(bench.period(10.1, 0.8), Decision::Stop);
     let words = bench.supervisor.cause().unwrap().to_string();
     assert_eq!(words, "force is 10.1 N, the limit is 10 N");
-    // The force still rises: it waits. Then up, 0.1 mm a period, for 2 mm.
+    // The force still rises, so the retreat waits. Then the robot moves up by 0.1 mm a period, for
+    // 2 mm.
     assert_eq!(bench.period(11.0, 0.8), Decision::Stop);
     for step in 1..=20 {
         let Decision::Retreat(pose) = bench.period(11.0 - 0.5 * f64::from(step), 0.8) else {
@@ -304,7 +305,7 @@ fn limits_cannot_be_raised_above_the_sensors() {
     assert!(with(|setup| setup.surface_mm.z = 105.0).contains("a depth of 4.00 mm"));
 }
 
-/// Any event, most of them harmless.
+/// Any event. Most of them are harmless.
 fn event() -> impl Strategy<Value = Observation> {
     let number = || {
         prop_oneof![
@@ -329,7 +330,7 @@ fn event() -> impl Strategy<Value = Observation> {
     ]
 }
 
-/// What comes next on a bench: events and decisions, at times that do not always go on.
+/// What comes next: events and decisions, at times that do not always increase.
 fn step() -> impl Strategy<Value = (f64, Result<Observation, f64>)> {
     let elapsed_s =
         prop_oneof![20 => 0.0..0.005_f64, 1 => 0.0..0.2_f64, 1 => Just(f64::NAN), 1 => Just(-1.0)];
@@ -340,8 +341,8 @@ fn step() -> impl Strategy<Value = (f64, Result<Observation, f64>)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
-    /// Whatever happens: nothing goes out that breaks a limit, a cause stops in its own call, and after it nothing goes
-    /// towards the sensor.
+    /// For any sequence of events: no pose that breaks a limit is released, a cause stops the press
+    /// in the same call, and after a cause no pose goes towards the sensor.
     #[test]
     fn after_a_cause_nothing_goes_forward(steps in prop::collection::vec(step(), 1..120)) {
         let mut supervisor = supervisor();
@@ -384,13 +385,13 @@ proptest! {
                 }
             }
             if before.is_some() {
-                // By their words: a cause may hold NaN, and is then unequal to itself.
+                // Compared as texts: a cause may hold NaN, which is not equal to itself.
                 prop_assert_eq!(supervisor.cause().map(ToString::to_string), before.map(|cause| cause.to_string()));
             }
         }
     }
 
-    /// A cause anywhere in a healthy press stops it in the period that it falls into.
+    /// A cause at any time in a healthy press stops it in the servo period of the cause.
     #[test]
     fn a_stop_takes_no_longer_than_a_servo_period(causing in event(), after in 1..60_u32, later_s in 0.0..PERIOD_S) {
         let mut bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Notices streams that fall silent.
+//! Detects streams that fall silent.
 
 use super::Cause;
 
@@ -26,13 +26,13 @@ impl Stream {
         now_s - self.heard_s
     }
 
-    /// Not alive when the time is no number.
+    /// Whether the stream is alive. It is not if the time is NaN.
     fn is_alive(&self, now_s: f64) -> bool {
         !self.failed && self.silence_s(now_s) <= self.longest_silence_s
     }
 }
 
-/// When each stream was heard last, and how long it may be silent.
+/// When each stream was last heard, and its longest allowed silence.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watchdog {
     streams: Vec<Stream>,
@@ -56,7 +56,7 @@ impl Watchdog {
         }
     }
 
-    /// Counts a stream as dead, whatever it says later.
+    /// Counts a stream as dead, also if it is heard again later.
     pub(super) fn fail(&mut self, stream: StreamId) {
         if let Some(stream) = self.streams.get_mut(stream.0) {
             stream.failed = true;
@@ -76,7 +76,7 @@ impl Watchdog {
         )
     }
 
-    /// The first stream that is silent for too long.
+    /// The first stream that has been silent for too long.
     pub(super) fn silent(&self, now_s: f64) -> Option<Cause> {
         self.streams
             .iter()

@@ -16,12 +16,12 @@ pub struct VoltageSample {
     pub lost_before: u32,
 }
 
-/// A measuring card that reads six gauges: any function that waits for the next voltages, at most so long, as
-/// [`WrenchSource::next_sample`] does.
+/// A measuring card that reads six gauges. `F` is any function that waits for the next voltages for
+/// at most the given time, as [`WrenchSource::next_sample`] does.
 #[derive(Clone, Debug)]
 pub struct Analog<F> {
     read: F,
-    /// What the voltages mean.
+    /// The calibration from voltages to a wrench.
     pub calibration: AnalogCalibration,
 }
 

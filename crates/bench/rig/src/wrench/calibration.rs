@@ -7,7 +7,7 @@ use twintac_config::ConfigError;
 use super::Wrench;
 use crate::RigError;
 
-/// How six gauge voltages make a wrench: `matrix * (volts - bias)`.
+/// How a wrench follows from six gauge voltages: `matrix * (volts - bias)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnalogCalibration {
@@ -16,7 +16,7 @@ pub struct AnalogCalibration {
     /// Voltages without load, V.
     #[serde(default)]
     pub bias_v: [f64; 6],
-    /// Voltage, to either side of zero, from which on a gauge counts as saturated, V.
+    /// Voltage at which a gauge counts as saturated, V, positive or negative.
     #[serde(default = "usual_range_v")]
     pub range_v: f64,
 }
@@ -40,7 +40,7 @@ impl AnalogCalibration {
         Ok(document.value)
     }
 
-    /// The same calibration with these voltages, V, counted as no load.
+    /// The same calibration, with these voltages, V, as the bias (no load).
     #[must_use]
     pub fn with_bias(self, bias_v: [f64; 6]) -> Self {
         Self { bias_v, ..self }
@@ -49,7 +49,7 @@ impl AnalogCalibration {
     /// The wrench of six gauge voltages, V.
     ///
     /// # Errors
-    /// A gauge that is saturated: its force is not known.
+    /// A gauge that is saturated: the force is then not known.
     pub fn wrench(&self, volts: [f64; 6]) -> Result<Wrench, RigError> {
         let is_measured = |volt: &f64| volt.abs() < self.range_v;
         if let Some(gauge) = volts.iter().position(|volt| !is_measured(volt)) {
@@ -58,7 +58,7 @@ impl AnalogCalibration {
                     "gauge {gauge} reads {} V, its range is ±{} V",
                     volts[gauge], self.range_v
                 ),
-                hint: "unload the sensor, or see to the cable",
+                hint: "unload the sensor, or check its cable",
             });
         }
         let row = |axis: usize| -> f64 {

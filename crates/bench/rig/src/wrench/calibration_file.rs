@@ -1,4 +1,4 @@
-//! ATI's calibration files (`.cal`): XML with a matrix in units of the user's choice.
+//! ATI's calibration files (`.cal`): XML with a matrix in units that the user chose.
 
 use roxmltree::{Document, Node};
 
@@ -10,11 +10,14 @@ use crate::units::{newton_millimetres, newtons};
 const AXES: [&str; 6] = ["Fx", "Fy", "Fz", "Tx", "Ty", "Tz"];
 
 impl AnalogCalibration {
-    /// Reads a calibration from the text of a `.cal` file: `FTSensor/Calibration/UserAxis`. These axes hold the transform of the file's
-    /// `BasicTransform` already. The bias is zero: take it from voltages without load ([`AnalogCalibration::with_bias`]).
+    /// Reads a calibration from the text of a `.cal` file: the elements
+    /// `FTSensor/Calibration/UserAxis`. These axes already include the transform of the file's
+    /// `BasicTransform`. The bias is zero: take it from voltages without load
+    /// ([`AnalogCalibration::with_bias`]).
     ///
     /// # Errors
-    /// Text that is no such file; an element, an attribute or an axis that is missing; numbers that cannot be read; unknown units.
+    /// Text that is no such file; a missing element, attribute or axis; numbers that cannot be
+    /// read; unknown units.
     pub fn parse_cal(file: &str, text: &str) -> Result<Self, RigError> {
         let document =
             Document::parse(text).map_err(|found| RigError::file(file, format!("is not XML: {found}")))?;
@@ -31,8 +34,9 @@ impl AnalogCalibration {
             let text = calibration
                 .attribute(name)
                 .ok_or_else(|| RigError::file(file, format!("`Calibration` has no attribute `{name}`")))?;
-            known(text)
-                .ok_or_else(|| RigError::file(file, format!("`{name}` is `{text}`, which is no unit known")))
+            known(text).ok_or_else(|| {
+                RigError::file(file, format!("`{name}` is `{text}`, which is not a known unit"))
+            })
         };
         let force_n = unit("ForceUnits", newtons)?;
         let torque_n_mm = unit("TorqueUnits", newton_millimetres)?;
@@ -134,7 +138,7 @@ mod tests {
             (
                 "\"N-m\"",
                 "\"ell\"",
-                "`TorqueUnits` is `ell`, which is no unit known",
+                "`TorqueUnits` is `ell`, which is not a known unit",
             ),
             ("FTSensor", "Sensor", "its root is `Sensor`, expected `FTSensor`"),
             ("Calibration", "Other", "has no element `Calibration`"),

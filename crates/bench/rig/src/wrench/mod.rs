@@ -1,4 +1,4 @@
-//! Where forces and torques come from.
+//! Sources of forces and torques.
 
 mod analog;
 mod calibration;
@@ -34,7 +34,7 @@ impl Wrench {
         torque_n_mm: DVec3::ZERO,
     };
 
-    /// From Fx, Fy, Fz, N, and Tx, Ty, Tz, N mm.
+    /// From Fx, Fy, Fz in N and Tx, Ty, Tz in N mm.
     #[must_use]
     pub fn from_axes([fx, fy, fz, tx, ty, tz]: [f64; 6]) -> Self {
         Self {
@@ -51,9 +51,9 @@ pub struct WrenchSample {
     pub stamp: Stamp,
     /// The reading.
     pub wrench: Wrench,
-    /// The source's number of the reading, if it counts them.
+    /// The number that the source gives to the reading, if it counts them.
     pub sequence: Option<u32>,
-    /// The source's status bits; 0 is healthy.
+    /// The source's status bits. 0 is healthy.
     pub status: u32,
     /// Readings lost between the one before and this one.
     pub lost_before: u32,
@@ -61,9 +61,9 @@ pub struct WrenchSample {
 
 /// A stream of readings.
 pub trait WrenchSource {
-    /// Waits for the next reading; `None` if there is none in time.
+    /// Waits for the next reading. `None` if there is none in time.
     ///
     /// # Errors
-    /// A source that cannot be read, or that says that its readings cannot be trusted.
+    /// A source that cannot be read, or that reports that its readings cannot be trusted.
     fn next_sample(&mut self, within: Duration) -> Result<Option<WrenchSample>, RigError>;
 }

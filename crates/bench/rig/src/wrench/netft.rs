@@ -7,7 +7,8 @@ use super::{WrenchSample, WrenchSource};
 use crate::netft::{Arrival, Client, Health, Record, SequenceReport, SequenceTracker};
 use crate::{BenchClock, RigError, Stamp};
 
-/// A Net F/T that streams. Records that come late or again are counted, but not given out: readings are in order.
+/// A Net F/T that streams. Records that arrive late or twice are counted but not returned, so the
+/// readings are in order.
 #[derive(Debug)]
 pub struct NetFtSource {
     client: Client,
@@ -17,7 +18,7 @@ pub struct NetFtSource {
 }
 
 impl NetFtSource {
-    /// Readings of a client that was started.
+    /// The readings of a client that was started.
     #[must_use]
     pub fn new(client: Client, clock: BenchClock) -> Self {
         Self {
@@ -28,13 +29,13 @@ impl NetFtSource {
         }
     }
 
-    /// What became of the records so far.
+    /// Counts of the records so far.
     #[must_use]
     pub fn report(&self) -> SequenceReport {
         self.tracker.report()
     }
 
-    /// The reading of a record, unless it is late or doubled.
+    /// The reading of a record, unless the record is late or a duplicate.
     fn sample(&mut self, bench_s: f64, record: &Record) -> Result<Option<WrenchSample>, RigError> {
         let tracked = self.tracker.track(record);
         if record.status.health() == Health::Error {
@@ -48,8 +49,8 @@ impl NetFtSource {
             Arrival::Late | Arrival::Doubled => return Ok(None),
             Arrival::Restarted => {
                 return Err(RigError::ForceSensor {
-                    problem: "its stream began anew".to_owned(),
-                    hint: "see whether it lost power, or whether another client uses it",
+                    problem: "its stream started again".to_owned(),
+                    hint: "check whether it lost power, or whether another client uses it",
                 });
             }
         };

@@ -1,4 +1,4 @@
-//! Readings out of a file.
+//! Readings from a file.
 
 use std::path::Path;
 use std::time::Duration;
@@ -8,18 +8,18 @@ use crate::{BenchClock, RigError};
 
 const COLUMNS: [&str; 7] = ["time_s", "fx_n", "fy_n", "fz_n", "tx_n_mm", "ty_n_mm", "tz_n_mm"];
 
-/// Plays recorded readings back at the pace at which they were recorded.
+/// Plays recorded readings at the pace of the recording.
 #[derive(Clone, Debug)]
 pub struct Replay {
     rows: Vec<(f64, Wrench)>,
     clock: BenchClock,
-    /// Time of the bench at which the first row is due, s.
+    /// Time of the bench clock at which the first row is due, s.
     begun_s: f64,
     played: usize,
 }
 
 impl Replay {
-    /// Reads a CSV file and begins to play it; see [`Replay::rows`].
+    /// Reads a CSV file and begins to play it. See [`Replay::rows`].
     ///
     /// # Errors
     /// A file that cannot be read, and those of [`Replay::rows`].
@@ -30,7 +30,7 @@ impl Replay {
         Ok(Self::new(Self::rows(&file, &text)?, clock))
     }
 
-    /// Begins to play rows of times, s, increasing, and readings.
+    /// Begins to play rows of a time, s, and a reading. The times must increase.
     #[must_use]
     pub fn new(rows: Vec<(f64, Wrench)>, clock: BenchClock) -> Self {
         Self {
@@ -41,11 +41,12 @@ impl Replay {
         }
     }
 
-    /// Reads times, s, and readings from CSV. Its header names the columns `time_s`, `fx_n`, `fy_n`, `fz_n`, `tx_n_mm`, `ty_n_mm`
-    /// and `tz_n_mm`, in any order and among others; `file` names it in errors.
+    /// Reads times, s, and readings from CSV. The header must name the columns `time_s`, `fx_n`,
+    /// `fy_n`, `fz_n`, `tx_n_mm`, `ty_n_mm` and `tz_n_mm`, in any order; other columns are allowed.
+    /// `file` is the name in errors.
     ///
     /// # Errors
-    /// A column that is missing, a cell that is no finite number, times that do not increase.
+    /// A missing column, a cell that is no finite number, times that do not increase.
     pub fn rows(file: &str, text: &str) -> Result<Vec<(f64, Wrench)>, RigError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..)
@@ -92,7 +93,7 @@ impl Replay {
 }
 
 impl WrenchSource for Replay {
-    /// The next row when it is due; `None` for ever after the last one.
+    /// The next row when it is due. Always `None` after the last row.
     fn next_sample(&mut self, within: Duration) -> Result<Option<WrenchSample>, RigError> {
         let now_s = self.clock.now_s();
         let due_s = self.rows.get(self.played).map_or(f64::INFINITY, |(time_s, _)| {

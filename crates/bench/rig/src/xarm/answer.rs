@@ -1,38 +1,39 @@
-//! What a response says.
+//! The content of a response.
 
 use super::bytes::{f32s, pose, pose_f32s, put_f32s};
 use super::{Command, MotionState};
 use crate::{Device, RigError, TcpPose};
 
-/// Bytes of a version's text.
+/// Length of the version text, bytes.
 const VERSION_BYTES: usize = 40;
 
 /// The answer to a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// Done; there is nothing to say.
+    /// The command was carried out. There is no data.
     Done,
     /// The firmware's version, as text.
     Version(String),
     /// What the robot is doing.
     State(MotionState),
-    /// Commands that wait.
+    /// Number of commands that wait.
     CommandCount(u16),
-    /// Codes of the error and of the warning; 0 for none.
+    /// Codes of the error and of the warning. 0 for none.
     Errors {
         /// The error.
         error: u8,
         /// The warning.
         warning: u8,
     },
-    /// Where the tool is.
+    /// Pose of the tool.
     Pose(TcpPose),
-    /// Angles of the joints, radians; those that the arm lacks are 0.
+    /// Angles of the joints, radians. Joints that the arm lacks are 0.
     Joints([f32; 7]),
 }
 
 impl Answer {
-    /// The answer to a command, in a response's payload. Bytes after it are left alone: newer firmware may say more.
+    /// Decodes the answer to a command from the payload of a response. Further bytes are ignored,
+    /// because newer firmware may add fields.
     ///
     /// # Errors
     /// A payload that is too short.
@@ -89,7 +90,7 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
     payload
 }
 
-/// Text up to the first NUL, at most as long as a version's.
+/// Text up to the first NUL, at most as long as a version text.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = &bytes[..bytes.len().min(VERSION_BYTES)];
     let text = bytes.split(|byte| *byte == 0).next().unwrap_or_default();

@@ -13,26 +13,29 @@ use super::{
 use crate::{Device, RigError, TcpPose};
 
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
-/// Motors take their time.
+/// Switching motors on takes longer than other commands.
 const ENABLE_WITHIN: Duration = Duration::from_secs(5);
 const POLL: Duration = Duration::from_millis(20);
-/// How near a move must end, mm and radians.
+/// Tolerance of the end of a move, mm and radians.
 const ARRIVED_MM: f64 = 0.1;
 const ARRIVED_RAD: f64 = 0.01;
-/// Requests whose answers may still come: more than there are poses in the time that an answer may take.
+/// Most requests whose responses may still come: more than the number of poses in the longest time
+/// that a response may take.
 const MOST_UNANSWERED: usize = 1024;
 
 /// A connection to the robot's command socket.
 ///
-/// [`Client::enable`], [`Client::move_to`] a first pose, [`Client::begin_servo`], then [`Client::servo`] in each period. After
-/// any error in servo mode the stream has ended: look at the error, and begin from `enable`. Nothing waits for answers to poses:
-/// [`Client::hear`] says for how long one is missing. Dropped in servo mode, it stops the robot.
+/// Call [`Client::enable`], [`Client::move_to`] to a first pose, [`Client::begin_servo`], then
+/// [`Client::servo`] in each period. Any error in servo mode ends the stream of poses: look at the
+/// error, and begin again with `enable`. The client does not wait for responses to poses;
+/// [`Client::hear`] returns for how long a response has been missing. A client that is dropped in
+/// servo mode stops the robot.
 #[derive(Debug)]
 pub struct Client<W: Wire> {
     pub(super) reader: FrameReader<W>,
     transaction: u16,
     pub(super) unanswered: VecDeque<Unanswered>,
-    /// The byte that firmware from 1.10 on wants beside a mode.
+    /// The byte that firmware from 1.10 on expects beside a mode.
     detection: Option<u8>,
     pub(super) servo: Option<PoseStream>,
     pub(super) answer_within: Duration,
@@ -43,23 +46,23 @@ pub struct Client<W: Wire> {
 pub(super) struct Unanswered {
     pub(super) request: Request,
     pub(super) sent: Instant,
-    /// Whether it is a pose of the stream that goes on, rather than a request that was given up.
+    /// Whether it is a pose of the present stream, and not a request that was given up.
     pub(super) is_pose: bool,
 }
 
 impl<W: Wire> Drop for Client<W> {
     fn drop(&mut self) {
         if self.servo.is_some() {
-            let _ = self.stop(); // nobody is left to hear how it went
+            let _ = self.stop(); // nobody can be told the result
         }
     }
 }
 
 impl Client<TcpStream> {
-    /// Connects by TCP, such as to `(host, PORT)`.
+    /// Connects by TCP, for example to `(host, PORT)`.
     ///
     /// # Errors
-    /// An address that does not exist, or does not answer within two seconds.
+    /// An address that does not exist or does not answer within two seconds.
     pub fn connect(address: impl ToSocketAddrs) -> Result<Self, RigError> {
         let stream = connect(address)?;
         stream
@@ -86,7 +89,7 @@ pub(super) fn connect(address: impl ToSocketAddrs) -> Result<TcpStream, RigError
 }
 
 impl<W: Wire> Client<W> {
-    /// A client on a connection that is open.
+    /// A client on an open connection.
     #[must_use]
     pub fn new(wire: W) -> Self {
         Self {
@@ -99,15 +102,17 @@ impl<W: Wire> Client<W> {
         }
     }
 
-    /// Waits for answers for so long; by default two seconds. Motors may take five all the same.
+    /// Sets how long the client waits for a response. Default: two seconds. Switching motors on may
+    /// always take five seconds.
     pub fn set_answer_within(&mut self, within: Duration) {
         self.answer_within = within;
     }
 
-    /// Cleans error and warning, switches the motors on, and makes the robot ready for moves to positions.
+    /// Clears error and warning, switches the motors on, and makes the robot ready for moves to
+    /// positions.
     ///
     /// # Errors
-    /// Those of [`Client::call`]: an error that cannot be cleaned is named.
+    /// Those of [`Client::call`]. An error that cannot be cleared is named.
     pub fn enable(&mut self) -> Result<(), RigError> {
         let version = self.version()?;
         self.detection = wants_detection(&version).then_some(0);
@@ -120,7 +125,7 @@ impl<W: Wire> Client<W> {
         self.set_state(SetState::Motion)
     }
 
-    /// Cleans error and warning.
+    /// Clears error and warning.
     ///
     /// # Errors
     /// Those of [`Client::call`].
@@ -129,7 +134,7 @@ impl<W: Wire> Client<W> {
         self.call(Command::CleanWarning).map(|_| ())
     }
 
-    /// Changes the mode; the state has to be set to motion after it.
+    /// Changes the mode. After that the state must be set to motion.
     ///
     /// # Errors
     /// Those of [`Client::call`].
@@ -147,11 +152,11 @@ impl<W: Wire> Client<W> {
         self.call(Command::SetState(state)).map(|_| ())
     }
 
-    /// Stops the robot now: the command goes out at once, whatever is unanswered, and is then waited for. No command moves the robot
-    /// before it is enabled anew.
+    /// Stops the robot now. The command is sent at once, whatever is unanswered, and then the
+    /// client waits for its response. No command moves the robot until it is enabled again.
     ///
     /// # Errors
-    /// Those of [`Client::call`]; a robot that does not confirm may be moving.
+    /// Those of [`Client::call`]. A robot that does not confirm may be moving.
     pub fn stop(&mut self) -> Result<(), RigError> {
         self.end_servo();
         self.set_state(SetState::Stop)
@@ -190,7 +195,7 @@ impl<W: Wire> Client<W> {
         })
     }
 
-    /// Where the tool is.
+    /// Pose of the tool.
     ///
     /// # Errors
     /// Those of [`Client::call`].
@@ -201,10 +206,12 @@ impl<W: Wire> Client<W> {
         })
     }
 
-    /// Moves along a line and waits until the robot is there; it must have been enabled. Stops the robot if it is not there in time.
+    /// Moves along a line and waits until the robot is there. The robot must be enabled. Stops the
+    /// robot if it is not there in time.
     ///
     /// # Errors
-    /// Those of [`Client::call`]; an error or a warning on the way, by its name; a robot that was stopped; lateness.
+    /// Those of [`Client::call`]; an error or a warning on the way, by its name; a robot that was
+    /// stopped; a robot that is not there in time.
     pub fn move_to(&mut self, to: &MoveTo, within: Duration) -> Result<(), RigError> {
         let name = "move";
         let begun = Instant::now();
@@ -219,7 +226,7 @@ impl<W: Wire> Client<W> {
                 return Err(RigError::Robot {
                     command: name,
                     problem: format!("the robot is {state}"),
-                    hint: "see why it was stopped, then enable it anew",
+                    hint: "find out why it was stopped, then enable it again",
                 });
             }
             let pose = self.pose()?;
@@ -234,18 +241,22 @@ impl<W: Wire> Client<W> {
         self.stop()?;
         Err(RigError::Robot {
             command: name,
-            problem: format!("the robot is not there within {} s", within.as_secs_f64()),
-            hint: "see what holds it, or give it more time",
+            problem: format!(
+                "the robot does not reach the pose within {} s",
+                within.as_secs_f64()
+            ),
+            hint: "check what blocks it, or allow more time",
         })
     }
 
-    /// Sends any command and waits for its answer ([`Client::set_answer_within`]). Answers to requests that were
-    /// given up are passed over, as is what the robot says unasked.
+    /// Sends any command and waits for its response (see [`Client::set_answer_within`]). Responses
+    /// to requests that were given up and unsolicited messages of the robot are skipped.
     ///
     /// # Errors
-    /// A connection that fails, silence, a response to something else, and state bits that the command does not put up with: an
-    /// error or a warning of the controller by its name, a robot that is not ready, a result that is not valid. Questions,
-    /// cleaning and stopping put up with all but the last.
+    /// A connection that fails, silence, a response to another request, and state bits that the
+    /// command does not tolerate: an error or a warning of the controller by its name, a robot that
+    /// is not ready, a result that is not valid. Queries, clearing errors and stopping tolerate all
+    /// of these bits except the last.
     pub fn call(&mut self, command: Command) -> Result<Answer, RigError> {
         let within = match command {
             Command::MotionEnable { .. } => self.answer_within.max(ENABLE_WITHIN),
@@ -262,7 +273,7 @@ impl<W: Wire> Client<W> {
         Ok(answer)
     }
 
-    /// Sends a command, and waits for nothing.
+    /// Sends a command without waiting for the response.
     pub(super) fn send(&mut self, command: Command) -> Result<Request, RigError> {
         self.transaction = self.transaction.checked_add(1).unwrap_or(1);
         let request = Request {
@@ -279,7 +290,7 @@ impl<W: Wire> Client<W> {
 
     fn ask<T>(&mut self, command: Command, pick: impl FnOnce(Answer) -> Option<T>) -> Result<T, RigError> {
         let name = command.name();
-        // A decoded answer fits its command.
+        // The decoded answer always fits its command.
         pick(self.call(command)?)
             .ok_or_else(|| RigError::malformed(Device::Robot, "answer", name, "another answer"))
     }
@@ -295,14 +306,14 @@ impl<W: Wire> Client<W> {
             };
             let command = waiting.request.command;
             if waiting.is_pose && response.state.without(command.tolerates()) != ResponseState::default() {
-                self.end_servo(); // whoever asks something else meanwhile gets that answer
+                self.end_servo(); // a query that is sent meanwhile receives that response
             }
         }
         self.remember(request, false);
         Err(late(request, within))
     }
 
-    /// Lets the answer to a request that was sent come later.
+    /// Remembers a request whose response may come later.
     pub(super) fn remember(&mut self, request: &Request, is_pose: bool) {
         if self.unanswered.len() == MOST_UNANSWERED {
             self.unanswered.pop_front();
@@ -321,7 +332,8 @@ impl<W: Wire> Client<W> {
         self.unanswered.remove(place)
     }
 
-    /// That a response has no state bits that its command does not put up with. An error's code is waited for so long.
+    /// Checks that a response has no state bits that its command does not tolerate. Waits `within`
+    /// for the code of an error.
     pub(super) fn check(
         &mut self,
         state: ResponseState,
@@ -346,9 +358,9 @@ impl<W: Wire> Client<W> {
                 "check the command against its firmware",
             )
         } else if bad.has(ResponseState::NOT_READY) {
-            ("the robot is not ready to move", "enable it anew")
+            ("the robot is not ready to move", "enable it again")
         } else if bad.has(ResponseState::ERROR | ResponseState::WARNING) {
-            ("the robot reports an error without a code", "enable it anew")
+            ("the robot reports an error without a code", "enable it again")
         } else {
             return Ok(());
         };
@@ -369,7 +381,8 @@ pub(super) fn late(request: &Request, within: Duration) -> RigError {
     }
 }
 
-/// Whether firmware wants to be told, with a mode, how to detect collisions: from 1.10 on, or when it does not say what it is.
+/// Whether the firmware expects the collision detection beside a mode: from 1.10 on, and if it does
+/// not state its version.
 fn wants_detection(version: &str) -> bool {
     version
         .split(['v', 'V'])

@@ -1,4 +1,4 @@
-//! The client against a controller on the loopback, and on a pair of buffers.
+//! The client against a controller on the loopback, and against a pair of buffers.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener};
@@ -11,7 +11,7 @@ use super::*;
 use crate::xarm::pose_stream::{PERIOD, PoseStream};
 use crate::xarm::{FEEDBACK, Pair, Report, ReportPort, ReportReader};
 
-/// Where the arm is and how it answers.
+/// State of the arm, and how it answers.
 #[derive(Clone, Debug)]
 struct Arm {
     pose: TcpPose,
@@ -19,7 +19,7 @@ struct Arm {
     state: MotionState,
     error: u8,
     version: &'static str,
-    /// The command that is answered wrongly, and how.
+    /// The command that gets a wrong response, and what is wrong.
     fault: Option<(u8, Fault)>,
     heard: Vec<Command>,
 }
@@ -112,17 +112,17 @@ fn to(pose: TcpPose) -> MoveTo {
     }
 }
 
-/// Whatever takes longer never happens, however busy the machine is.
+/// A wait that is longer than any delay of a busy machine.
 const LATEST: Duration = Duration::from_secs(60);
 
-/// A client that waits for as long as a busy machine may take.
+/// A client that waits as long as a busy machine may need.
 fn connected(address: SocketAddr) -> Client<TcpStream> {
     let mut client = Client::connect(address).unwrap();
     client.set_answer_within(LATEST);
     client
 }
 
-/// Serves one connection; answers come in two pieces, each after a frame of feedback.
+/// Serves one connection. Each response comes in two pieces, after a frame of feedback.
 fn controller(arm: Arm) -> (SocketAddr, Arc<Mutex<Arm>>, JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
@@ -177,7 +177,8 @@ fn a_session_from_enabling_to_stopping() {
     drop(client);
     server.join().unwrap();
     let functions: Vec<u8> = arm.lock().unwrap().heard.iter().map(Command::function).collect();
-    // Version, clean twice, enable, mode, state; the move, with errors, state and pose; mode, state, state, pose; servo; pose; stop; state.
+    // Version, clear twice, enable, mode, state; the move, with errors, state and pose; mode,
+    // state, state, pose; servo; pose; stop; state.
     assert_eq!(functions[..10], [1, 16, 17, 11, 19, 12, 21, 15, 13, 41]);
     assert_eq!(functions[10..15], [19, 12, 13, 41, 30]);
     assert_eq!(functions[63..], [30, 41, 12, 13]);
@@ -194,7 +195,7 @@ fn errors_have_names_and_end_the_stream() {
         (
             30,
             Fault::State(0x10),
-            "robot: servo: the robot is not ready to move; enable it anew",
+            "robot: servo: the robot is not ready to move; enable it again",
         ),
         (
             30,
@@ -233,7 +234,7 @@ fn errors_have_names_and_end_the_stream() {
             client.enable()?;
             client.move_to(&to(at(250.0)), LATEST)?;
             client.begin_servo()?;
-            // The first pose's error comes with one of the next.
+            // The error of the first pose comes with one of the next poses.
             let begun = Instant::now();
             while begun.elapsed() < LATEST {
                 client.servo(&at(249.9))?;
@@ -244,7 +245,7 @@ fn errors_have_names_and_end_the_stream() {
         if function == 30
             && error
                 .to_string()
-                .ends_with("an error without a code; enable it anew")
+                .ends_with("an error without a code; enable it again")
         {
             // A code that took longer than a servo period.
             match client.errors().unwrap() {
@@ -255,7 +256,7 @@ fn errors_have_names_and_end_the_stream() {
             assert!(error.to_string().starts_with(words), "{error}");
         }
         let again = client.servo(&at(249.8)).unwrap_err().to_string();
-        assert!(again.contains("no stream of poses was begun"), "{again}");
+        assert!(again.contains("no stream of poses was started"), "{again}");
         drop(client);
         server.join().unwrap();
     }
@@ -372,7 +373,7 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
         "nobody owes a pose any more"
     );
 
-    // A stream whose answers do not come ends.
+    // A stream ends if its responses do not come.
     client.enable().unwrap();
     client.begin_servo().unwrap();
     client.set_answer_within(Duration::from_millis(50));
@@ -391,7 +392,7 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
     assert!(heard.contains(&Command::SetState(SetState::Stop)));
 }
 
-/// Feedback without end.
+/// Endless feedback.
 struct Flood;
 
 impl Read for Flood {
@@ -495,7 +496,7 @@ fn a_move_that_does_not_arrive_is_stopped() {
         .to_string();
     assert_eq!(
         error,
-        "robot: move: the robot is not there within 0.05 s; see what holds it, or give it more time"
+        "robot: move: the robot does not reach the pose within 0.05 s; check what blocks it, or allow more time"
     );
     assert_eq!(client.state().unwrap(), MotionState::Stopped);
     assert_eq!(arm.lock().unwrap().pose, at(300.0));

@@ -14,18 +14,18 @@ use crate::{Device, RigError, Splitter};
 
 /// TCP port for commands.
 pub const PORT: u16 = 502;
-/// The protocol number of these frames; 0 would be Modbus, 3 the same with a life sign.
+/// Protocol number of these frames. 0 is Modbus, 3 is the same with a heartbeat.
 pub const PROTOCOL: u16 = 2;
-/// Function code of what the robot says unasked.
+/// Function code of unsolicited messages of the robot.
 pub const FEEDBACK: u8 = 0xff;
-/// Largest frame that is accepted; the longest that is known has 48 bytes.
+/// Largest frame that is accepted. The longest known frame has 48 bytes.
 pub const LARGEST_FRAME_BYTES: usize = 1024;
 const HEADER_BYTES: usize = 6;
 
 /// A command on its way to the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// A number by which the response names it, from 1.
+    /// Number of the request, from 1. The response has the same number.
     pub transaction: u16,
     /// The protocol's number, [`PROTOCOL`].
     pub protocol: u16,
@@ -42,18 +42,18 @@ pub struct Response {
     pub protocol: u16,
     /// The request's function code.
     pub function: u8,
-    /// How the robot is.
+    /// State of the robot.
     pub state: ResponseState,
     /// The answer's bytes.
     pub payload: Vec<u8>,
 }
 
-/// What comes from the robot.
+/// A message from the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Incoming {
     /// The answer to a request.
     Response(Response),
-    /// Something unasked: what follows its function code.
+    /// An unsolicited message: the bytes after its function code.
     Feedback(Vec<u8>),
 }
 
@@ -94,7 +94,7 @@ impl Request {
 }
 
 impl Response {
-    /// The answer to a request.
+    /// The response to a request.
     #[must_use]
     pub fn to(request: &Request, state: ResponseState, answer: &Answer) -> Self {
         Self {
@@ -106,10 +106,11 @@ impl Response {
         }
     }
 
-    /// The answer, if this is the response to that request.
+    /// The answer, if this is the response to `request`.
     ///
     /// # Errors
-    /// Another transaction, protocol or function than the request's, a payload that is too short.
+    /// Another transaction, protocol or function than that of the request, or a payload that is too
+    /// short.
     pub fn answer(&self, request: &Request) -> Result<Answer, RigError> {
         for (field, expected, found) in [
             ("transaction", request.transaction, self.transaction),
@@ -137,10 +138,10 @@ impl Response {
 }
 
 impl Incoming {
-    /// What a frame from the robot holds.
+    /// The message in a frame from the robot.
     ///
     /// # Errors
-    /// A frame that is not whole, or has no state.
+    /// A frame that is not complete, or has no state.
     pub fn decode(frame: &[u8]) -> Result<Self, RigError> {
         let (transaction, protocol, function, rest) = parts(frame)?;
         if function == FEEDBACK {
@@ -164,10 +165,10 @@ impl Incoming {
     }
 }
 
-/// A frame around what follows its header; what does not fit is cut off.
+/// Adds the header to a payload. What does not fit is cut off.
 fn frame(transaction: u16, protocol: u16, rest: &[u8]) -> Vec<u8> {
     let rest = &rest[..rest.len().min(LARGEST_FRAME_BYTES - HEADER_BYTES)];
-    let length = rest.len() as u16; // less than the largest frame
+    let length = rest.len() as u16; // smaller than the largest frame
     let mut frame = Vec::with_capacity(HEADER_BYTES + rest.len());
     for number in [transaction, protocol, length] {
         frame.extend(number.to_be_bytes());
@@ -194,7 +195,7 @@ fn parts(frame: &[u8]) -> Result<(u16, u16, u8, &[u8]), RigError> {
     Ok((u16_at(frame, 0), u16_at(frame, 2), frame[6], &frame[7..]))
 }
 
-/// The bytes must reach there.
+/// The number at offset `at`. The bytes must reach that far.
 fn u16_at(bytes: &[u8], at: usize) -> u16 {
     u16::from_be_bytes([bytes[at], bytes[at + 1]])
 }

@@ -4,65 +4,65 @@ use super::bytes::{f32s, pose, pose_f32s, put_f32s};
 use super::{Mode, ResponseState};
 use crate::{Device, RigError, TcpPose};
 
-/// What the robot is asked.
+/// A command to the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Which firmware it runs.
+    /// Ask for the version of the firmware.
     GetVersion,
-    /// To switch motors on or off.
+    /// Switch motors on or off.
     MotionEnable {
-        /// Which joint, from 1; [`Command::ALL_AXES`] for all.
+        /// Which joint, counted from 1. [`Command::ALL_AXES`] for all.
         axis: u8,
         /// On or off.
         on: bool,
     },
-    /// To change its state.
+    /// Change the state.
     SetState(SetState),
-    /// What it is doing.
+    /// Ask for the state.
     GetState,
-    /// How many commands wait.
+    /// Ask for the number of commands that wait.
     GetCommandCount,
-    /// Which error and which warning it has.
+    /// Ask for the codes of error and warning.
     GetErrors,
-    /// To clean its error.
+    /// Clear the error.
     CleanError,
-    /// To clean its warning.
+    /// Clear the warning.
     CleanWarning,
-    /// To change its mode.
+    /// Change the mode.
     SetMode {
         /// The mode.
         mode: Mode,
-        /// How collisions are detected in it; firmware before 1.10 knows no such byte.
+        /// How collisions are detected in this mode. Firmware before 1.10 does not know this byte.
         detection: Option<u8>,
     },
-    /// To move along a line.
+    /// Move along a line.
     MoveLine {
         /// Where to, and how.
         to: MoveTo,
-        /// How long it takes, s; 0 to go by the speed.
+        /// Duration, s. 0: use the speed.
         time_s: f64,
     },
-    /// To be at a pose now; in servo mode.
+    /// Be at a pose now, in servo mode.
     ServoCartesian {
-        /// The pose; the robot ignores its speed and acceleration.
+        /// The pose. The robot ignores its speed and acceleration.
         to: MoveTo,
-        /// Whether the pose is meant in the tool's frame rather than the base's.
+        /// Whether the pose is given in the tool's frame and not in the base frame.
         in_tool_frame: bool,
     },
-    /// Where its tool is.
+    /// Ask for the pose of the tool.
     GetPose,
-    /// Where its joints are.
+    /// Ask for the angles of the joints.
     GetJoints,
-    /// Anything else.
+    /// Any other command.
     Other {
         /// The function code.
         function: u8,
-        /// What follows it.
+        /// The bytes after the function code.
         payload: Vec<u8>,
     },
 }
 
-/// Where to go and how.
+/// Target and motion of a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoveTo {
     /// The pose.
@@ -77,7 +77,7 @@ pub struct MoveTo {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum SetState {
-    /// Take commands that move.
+    /// Accept commands that move the robot.
     Motion = 0,
     /// Pause.
     Pause = 3,
@@ -92,7 +92,7 @@ impl SetState {
 }
 
 impl MoveTo {
-    /// Nine numbers; moves and servo commands use the last one differently.
+    /// Nine numbers. Moves and servo commands use the last one differently.
     fn encode(&self, last: f64) -> Vec<u8> {
         let mut payload = vec![0; 4 * 9];
         put_f32s(&mut payload, 0, &pose_f32s(&self.pose));
@@ -137,7 +137,7 @@ impl Command {
         }
     }
 
-    /// Its name, for people.
+    /// Its name in messages for people.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -158,7 +158,7 @@ impl Command {
         }
     }
 
-    /// What follows the function code.
+    /// The bytes after the function code.
     #[must_use]
     pub fn payload(&self) -> Vec<u8> {
         match self {
@@ -179,8 +179,8 @@ impl Command {
         }
     }
 
-    /// The command of a function code and a payload; [`Command::Other`] for a code that is not known. Bytes after the payload are
-    /// left alone.
+    /// Decodes a command from a function code and a payload. An unknown code gives
+    /// [`Command::Other`]. Bytes after the payload are ignored.
     ///
     /// # Errors
     /// A known command whose payload is too short or names an unknown state or mode.
@@ -228,8 +228,9 @@ impl Command {
         })
     }
 
-    /// State bits that an answer to this command may have set. Asking and cleaning go on whatever the state is; what prepares
-    /// motion, while the robot is not ready; what moves it tolerates none.
+    /// State bits that the response to this command may have. Queries and commands that clear
+    /// errors work in any state. Commands that prepare motion tolerate a robot that is not ready.
+    /// Commands that move the robot tolerate none.
     pub(super) fn tolerates(&self) -> ResponseState {
         let not_ready = ResponseState::NOT_READY | ResponseState::WARNING;
         match self {

@@ -7,12 +7,12 @@ use std::fmt;
 pub enum ControllerCode {
     /// The robot stopped.
     Error(u8),
-    /// The robot goes on, not as asked.
+    /// The robot continues, but not as asked.
     Warning(u8),
 }
 
 impl ControllerCode {
-    /// The graver of an error's and a warning's code, if either is set.
+    /// The more severe of an error code and a warning code, if one of them is set.
     #[must_use]
     pub fn of(error: u8, warning: u8) -> Option<Self> {
         match (error, warning) {
@@ -38,16 +38,16 @@ impl ControllerCode {
         match self {
             Self::Error(1..=3) => (
                 "emergency stop",
-                "see that all is safe, release the button, enable the robot anew",
+                "make sure that all is safe, release the button, enable the robot again",
             ),
             Self::Error(10..=17) => ("a servo motor reports an error", "switch the robot off and on"),
             Self::Error(18 | 19 | 28) => (
-                "no communication with what is at the end of the arm",
-                "check the cable and the end effector, then enable the robot anew",
+                "no communication with the end effector",
+                "check the cable and the end effector, then enable the robot again",
             ),
             Self::Error(21) => (
                 "kinematic error",
-                "choose poses farther from where the arm is stretched or folded",
+                "choose poses in which the arm is less stretched or folded",
             ),
             Self::Error(22) => ("the arm would collide with itself", "choose another path"),
             Self::Error(23) => (
@@ -61,13 +61,13 @@ impl ControllerCode {
             Self::Error(25) => ("the path cannot be planned", "choose another path"),
             Self::Error(31) => (
                 "collision: a motor draws too much current",
-                "see what the arm has met, and check payload and sensitivity",
+                "find out what the arm has hit, and check payload and sensitivity",
             ),
             Self::Error(35) => ("outside the safety boundary", "choose poses inside the boundary"),
             Self::Error(40) => ("no joint angles reach this pose", "choose another pose"),
             Self::Error(50..=53) => (
                 "the robot's own force/torque sensor reports an error",
-                "check the sensor, then enable it anew",
+                "check the sensor, then enable it again",
             ),
             Self::Warning(11) => ("the command queue is full", "send commands more slowly"),
             Self::Warning(12) => (
@@ -76,7 +76,7 @@ impl ControllerCode {
             ),
             Self::Warning(14) => ("no joint angles reach this pose", "choose another pose"),
             Self::Error(_) | Self::Warning(_) => {
-                ("not known here", "look the code up in the controller's manual")
+                ("unknown code", "look the code up in the controller's manual")
             }
         }
     }
@@ -104,9 +104,9 @@ mod tests {
         assert!(
             collision
                 .to_string()
-                .starts_with("error 31 (collision: a motor draws too much current; see")
+                .starts_with("error 31 (collision: a motor draws too much current; find")
         );
-        let named = (1..=255).filter(|code| ControllerCode::Error(*code).name() != "not known here");
+        let named = (1..=255).filter(|code| ControllerCode::Error(*code).name() != "unknown code");
         assert_eq!(named.count(), 3 + 8 + 3 + 5 + 1 + 1 + 1 + 4);
     }
 }

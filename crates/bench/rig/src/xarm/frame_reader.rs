@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 use super::Wire;
 use crate::{Device, RigError, Splitter};
 
-/// A connection, and what of it was read but not used yet.
+/// A connection, with the bytes that were read and are not used yet.
 #[derive(Debug)]
 pub(super) struct FrameReader<W> {
     pub(super) wire: W,
     splitter: Splitter,
     chunk: Vec<u8>,
-    /// The part of the chunk that was read and not split yet.
+    /// The part of the chunk that was read and not yet split.
     rest: std::ops::Range<usize>,
 }
 
@@ -26,7 +26,8 @@ impl<W: Wire> FrameReader<W> {
         }
     }
 
-    /// The next frame; `None` if it is not whole by the deadline, or, without one, by now.
+    /// The next frame. `None` if it is not complete by the deadline, or, without a deadline, by
+    /// now.
     pub(super) fn next(&mut self, deadline: Option<Instant>) -> Result<Option<Vec<u8>>, RigError> {
         loop {
             let mut bytes = &self.chunk[self.rest.clone()];

@@ -1,6 +1,7 @@
-//! UFACTORY xArm: a robot arm that takes commands by TCP and pushes reports on sockets of their own.
+//! UFACTORY xArm: a robot arm that takes commands by TCP and sends reports on separate sockets.
 //!
-//! Source: the manufacturer's own client, xArm-Python-SDK (`x_config.py`, `uxbus_cmd.py`, `uxbus_cmd_tcp.py`, `report.py`).
+//! Source: the manufacturer's own client, xArm-Python-SDK (`x_config.py`, `uxbus_cmd.py`,
+//! `uxbus_cmd_tcp.py`, `report.py`).
 
 mod answer;
 mod bytes;

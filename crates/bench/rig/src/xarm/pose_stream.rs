@@ -1,27 +1,28 @@
-//! When the next pose of a stream may go out, and how far it may be from the last one.
+//! When the next pose of a stream may be sent, and how far it may be from the last one.
 //!
-//! The limits are the manufacturer's for its servo mode: at most 250 poses a second, steps of at most 10 mm, at most 1000 mm/s.
+//! The limits are those of the manufacturer for the servo mode: at most 250 poses a second, steps
+//! of at most 10 mm, at most 1000 mm/s.
 
 use std::time::{Duration, Instant};
 
 use crate::TcpPose;
 
-/// Longest way from one pose to the next, mm.
+/// Longest step from one pose to the next, mm.
 pub const LONGEST_STEP_MM: f64 = 10.0;
 pub(super) const PERIOD: Duration = Duration::from_millis(4);
 const FASTEST_MM_PER_S: f64 = 1000.0;
 
-/// What a stream of poses remembers.
+/// State of a stream of poses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseStream {
     pub(super) last: TcpPose,
     pub(super) sent: Instant,
-    /// When the next pose may go out.
+    /// When the next pose may be sent.
     pub(super) due: Instant,
 }
 
 impl PoseStream {
-    /// A stream that begins now, at a pose.
+    /// A stream that begins now at a pose.
     pub(super) fn at(last: TcpPose) -> Self {
         let sent = Instant::now();
         let due = sent + PERIOD;
@@ -29,7 +30,7 @@ impl PoseStream {
     }
 }
 
-/// Longest step after so long a time, mm: the speed counts over a period at least.
+/// Longest step after the time `elapsed`, mm. The speed limit counts over at least one period.
 pub(super) fn longest_step_mm(elapsed: Duration) -> f64 {
     LONGEST_STEP_MM.min(FASTEST_MM_PER_S * elapsed.max(PERIOD).as_secs_f64())
 }

@@ -1,4 +1,4 @@
-//! What newer firmware pushes on its real-time socket.
+//! The report that newer firmware sends on its real-time socket.
 
 use super::bytes::{f32s, pose, pose_f32s, put_f32s};
 use super::report::{check_size, sized};
@@ -9,30 +9,30 @@ use crate::{Device, RigError, TcpPose};
 pub struct RealTimeReport {
     /// The controller's clock, in its own unit.
     pub stamp: u64,
-    /// Where the joints should be, radians.
+    /// Target angles of the joints, radians.
     pub target_joints_rad: [f32; 7],
-    /// Where they are, radians.
+    /// Measured angles of the joints, radians.
     pub joints_rad: [f32; 7],
-    /// Where the tool should be.
+    /// Target pose of the tool.
     pub target_pose: TcpPose,
-    /// Where it is.
+    /// Measured pose of the tool.
     pub pose: TcpPose,
-    /// How fast it moves, mm/s, and turns, rad/s.
+    /// Speed of the tool: translation, mm/s, and rotation, rad/s.
     pub speed: [f32; 6],
 }
 
 impl RealTimeReport {
     /// TCP port.
     pub const PORT: u16 = 30000;
-    /// Size of the newest report that is known; it may be longer.
+    /// Size of the newest known report. A report may be longer.
     const BYTES: usize = 804;
     /// End of the last field that is read.
     const READ_BYTES: usize = 520;
 
-    /// The report of a frame, as [`report_splitter`](super::report_splitter) splits them off.
+    /// Decodes a report from a frame of [`report_splitter`](super::report_splitter).
     ///
     /// # Errors
-    /// A frame that is too short, or of another size than it says.
+    /// A frame that is too short, or whose size differs from the stated one.
     pub fn decode(frame: &[u8]) -> Result<Self, RigError> {
         check_size(frame, Self::READ_BYTES)?;
         let fields = || {
@@ -48,7 +48,7 @@ impl RealTimeReport {
         fields().ok_or_else(|| RigError::malformed(Device::Robot, "report", Self::READ_BYTES, frame.len()))
     }
 
-    /// The report's frame; fields that are not read are zero there.
+    /// The frame of the report. Fields that are not read are zero.
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         let mut frame = sized(Self::BYTES);

@@ -1,24 +1,25 @@
-//! What the robot pushes on its report sockets: a size, then fields at fixed places. Newer firmware sends longer reports.
+//! Reports that the robot sends on its report sockets: a size, then fields at fixed offsets. Newer
+//! firmware sends longer reports.
 
 use super::answer::text;
 use super::bytes::{f32s, pose, pose_f32s, put_f32s};
 use super::{Mode, MotionState};
 use crate::{Device, RigError, Splitter, TcpPose};
 
-/// Largest report that is accepted; the longest that is known has 804 bytes.
+/// Largest report that is accepted. The longest known report has 804 bytes.
 pub const LARGEST_REPORT_BYTES: usize = 4096;
 pub(super) const SIZE_BYTES: usize = 4;
-/// State, commands, joints, pose and torques, which all reports have.
+/// Size of state, commands, joints, pose and torques, which all reports have.
 const COMMON_BYTES: usize = 87;
 
-/// A socket that pushes reports.
+/// A socket on which the robot sends reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportPort {
-    /// 5 a second.
+    /// 5 reports a second.
     Normal,
-    /// 5 a second, with all there is.
+    /// 5 reports a second, with all fields.
     Rich,
-    /// 100 a second, with forces.
+    /// 100 reports a second, with forces.
     Development,
 }
 
@@ -27,34 +28,34 @@ pub enum ReportPort {
 pub struct Report {
     /// What the robot is doing.
     pub state: MotionState,
-    /// Code of its mode; see [`Mode::from_code`].
+    /// Code of the mode. See [`Mode::from_code`].
     pub mode: u8,
-    /// Commands that wait.
+    /// Number of commands that wait.
     pub command_count: u16,
     /// Angles of the joints, radians.
     pub joints_rad: [f32; 7],
-    /// Where the tool is.
+    /// Pose of the tool.
     pub pose: TcpPose,
     /// Torques of the joints, in the controller's unit.
     pub joint_torques: [f32; 7],
-    /// Errors and settings; normal and rich reports have them.
+    /// Errors and settings. Normal and rich reports have them.
     pub status: Option<RobotStatus>,
-    /// The robot's own force sensor; newer rich and development reports have it.
+    /// The robot's own force sensor. Newer rich and development reports have it.
     pub wrench: Option<RobotWrench>,
-    /// The firmware's version; rich reports have it.
+    /// The version of the firmware. Rich reports have it.
     pub version: Option<String>,
 }
 
 /// Errors and settings of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotStatus {
-    /// Joints whose brakes are released, a bit each.
+    /// Joints whose brakes are released, one bit each.
     pub brakes: u8,
-    /// Joints whose motors are on, a bit each.
+    /// Joints whose motors are on, one bit each.
     pub enabled: u8,
-    /// Code of the error, 0 for none.
+    /// Code of the error. 0 for none.
     pub error: u8,
-    /// Code of the warning, 0 for none.
+    /// Code of the warning. 0 for none.
     pub warning: u8,
     /// The tool centre point in the flange's frame.
     pub tcp_offset: TcpPose,
@@ -62,16 +63,16 @@ pub struct RobotStatus {
     pub payload: [f32; 4],
     /// Sensitivity of the collision detection.
     pub collision_sensitivity: u8,
-    /// Sensitivity when led by hand.
+    /// Sensitivity when the arm is led by hand.
     pub teach_sensitivity: u8,
-    /// Direction of gravity in the base's frame, where the report has it.
+    /// Direction of gravity in the base frame, if the report has it.
     pub gravity: Option<[f32; 3]>,
 }
 
 /// The robot's own force sensor: Fx, Fy, Fz, Tx, Ty, Tz in its own units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotWrench {
-    /// Without the tool's weight.
+    /// Without the weight of the tool.
     pub external: [f32; 6],
     /// As measured.
     pub raw: [f32; 6],
@@ -101,7 +102,7 @@ impl ReportPort {
         }
     }
 
-    /// Size of the newest report that is known, and place of the wrench in it.
+    /// Size of the newest known report, and offset of the wrench in it.
     fn layout(self) -> (usize, Option<usize>) {
         match self {
             Self::Normal => (145, None),
@@ -112,10 +113,11 @@ impl ReportPort {
 }
 
 impl Report {
-    /// The report of a frame. Fields that an older firmware's shorter report lacks are left out.
+    /// Decodes a report from a frame. Fields that are missing in the shorter report of an older
+    /// firmware are left out.
     ///
     /// # Errors
-    /// A frame without what all reports have, or of another size than it says.
+    /// A frame that lacks the fields of all reports, or whose size differs from the stated one.
     pub fn decode(port: ReportPort, frame: &[u8]) -> Result<Self, RigError> {
         check_size(frame, COMMON_BYTES)?;
         let short = || RigError::malformed(Device::Robot, "report", COMMON_BYTES, frame.len());
@@ -152,7 +154,7 @@ impl Report {
         Mode::from_code(self.mode)
     }
 
-    /// The frame of the newest layout that is known; what the report lacks is zero there.
+    /// The frame in the newest known layout. Fields that the report lacks are zero.
     #[must_use]
     pub fn encode(&self, port: ReportPort) -> Vec<u8> {
         let (size, wrench_at) = port.layout();
@@ -201,14 +203,14 @@ impl RobotStatus {
     }
 }
 
-/// A frame of zeros that says its size.
+/// A frame of zeros that states its size.
 pub(super) fn sized(size: usize) -> Vec<u8> {
     let mut frame = vec![0; size];
     frame[..SIZE_BYTES].copy_from_slice(&(size as u32).to_be_bytes()); // a few hundred
     frame
 }
 
-/// That a frame says its size, and is no smaller than it must be.
+/// Checks that a frame has its stated size and at least the smallest size.
 pub(super) fn check_size(frame: &[u8], smallest: usize) -> Result<(), RigError> {
     let malformed =
         |expected: String| RigError::malformed(Device::Robot, "report size", expected, frame.len());
@@ -259,7 +261,7 @@ mod tests {
         }
     }
 
-    /// What a port's report has of it.
+    /// The part of the report that a port's report has.
     fn on(port: ReportPort) -> Report {
         let all = report();
         Report {

@@ -8,8 +8,9 @@ use super::frame_reader::FrameReader;
 use super::{Report, ReportPort, Wire, report_splitter};
 use crate::RigError;
 
-/// A connection to a report socket. The robot pushes: reports that are not read in time wait in the connection, and are old
-/// when they are read, so read in a thread of their own.
+/// A connection to a report socket. The robot sends without being asked. Reports that are not read
+/// in time wait in the connection and are old when they are read, so read them in a separate
+/// thread.
 #[derive(Debug)]
 pub struct ReportReader<W> {
     reader: FrameReader<W>,
@@ -27,7 +28,7 @@ impl ReportReader<TcpStream> {
 }
 
 impl<W: Wire> ReportReader<W> {
-    /// Reads from a connection that is open, on which a port's reports come.
+    /// Reads the reports of a port from an open connection.
     #[must_use]
     pub fn new(wire: W, port: ReportPort) -> Self {
         Self {
@@ -36,7 +37,7 @@ impl<W: Wire> ReportReader<W> {
         }
     }
 
-    /// Waits for the next report; `None` if it is not whole in time.
+    /// Waits for the next report. `None` if it is not complete in time.
     ///
     /// # Errors
     /// A connection that fails or ends, bytes that are no report.

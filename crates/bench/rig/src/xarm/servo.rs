@@ -1,6 +1,7 @@
 //! Streams poses that the robot follows at once.
 //!
-//! The robot keeps no queue: only the latest pose counts. Nobody waits for answers to poses: they are taken in as they come.
+//! The robot keeps no queue: only the latest pose counts. The client does not wait for responses to
+//! poses. It takes them in as they come.
 
 use std::time::{Duration, Instant};
 
@@ -9,13 +10,15 @@ use super::pose_stream::{PERIOD, PoseStream, longest_step_mm};
 use super::{Client, Command, Incoming, Mode, MotionState, MoveTo, SetState, Wire};
 use crate::{Device, RigError, TcpPose};
 
-/// Frames that are taken in at once: many periods' answers, and no end of feedback.
+/// Most frames that are taken in at once: the responses of many periods, so that endless feedback
+/// cannot hold the loop.
 const MOST_FRAMES: usize = 256;
 /// Time that the robot needs to change to servo mode.
 const SETTLES: Duration = Duration::from_millis(100);
 
 impl<W: Wire> Client<W> {
-    /// Puts the robot, which was enabled, into servo mode where it is, and returns its pose: the first pose must be near it.
+    /// Puts an enabled robot into servo mode where it is, and returns its pose. The first pose must
+    /// be near it.
     ///
     /// # Errors
     /// Those of [`Client::call`], and a robot that is not ready.
@@ -25,32 +28,34 @@ impl<W: Wire> Client<W> {
         std::thread::sleep(SETTLES);
         let state = self.state()?;
         if !matches!(state, MotionState::Ready | MotionState::Moving) {
-            return Err(refused(format!("the robot is {state}"), "enable it anew"));
+            return Err(refused(format!("the robot is {state}"), "enable it again"));
         }
         let last = self.pose()?;
         self.servo = Some(PoseStream::at(last));
         Ok(last)
     }
 
-    /// Sends a pose when it is due, and does not wait for the answer. Poses are due every 4 ms: one that comes late may be followed
-    /// sooner, after 2 ms at the soonest. After any error the stream has ended, and the robot holds the last pose that it took.
+    /// Sends a pose when it is due, and does not wait for the response. Poses are due every 4 ms.
+    /// After a late pose the next one may follow sooner, but not before 2 ms. Any error ends the
+    /// stream, and the robot holds the last pose that it accepted.
     ///
     /// # Errors
-    /// Those of [`Client::hear`]; a pose with a NaN, too far from the last one or too fast; no stream begun.
+    /// Those of [`Client::hear`]; a pose with a NaN, too far from the last one or too fast; no
+    /// stream was begun.
     pub fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
         if let Some(servo) = self.servo {
             std::thread::sleep(servo.due.saturating_duration_since(Instant::now()));
             self.hear()?;
         }
         let Some(servo) = self.servo.take() else {
-            return Err(refused("no stream of poses was begun".to_owned(), "begin one"));
+            return Err(refused("no stream of poses was started".to_owned(), "start one"));
         };
         let step_mm = pose.distance_mm(&servo.last);
         let longest_mm = longest_step_mm(servo.sent.elapsed());
         let is_near = step_mm <= longest_mm;
         if !is_near || !pose.is_finite() {
             return Err(refused(
-                format!("a step of {step_mm:.3} mm, where {longest_mm:.3} mm are the most"),
+                format!("a step of {step_mm:.3} mm, above the limit of {longest_mm:.3} mm"),
                 "send poses closer to each other",
             ));
         }
@@ -73,11 +78,13 @@ impl<W: Wire> Client<W> {
         Ok(())
     }
 
-    /// Takes in the answers to poses that have come, and waits for none; for how long the oldest one that is missing has been missing.
-    /// An error's code is asked for, and waited for 4 ms. After any error the stream has ended.
+    /// Takes in the responses to poses that have arrived, and waits for none. Returns for how long
+    /// the oldest missing response has been missing. After an error it asks for the error's code
+    /// and waits 4 ms for it. Any error ends the stream.
     ///
     /// # Errors
-    /// A connection that fails, answers to something else or with state bits of an error, an answer missing for too long ([`Client::set_answer_within`]).
+    /// A connection that fails; responses to another request or with state bits of an error; a
+    /// response that is missing for too long ([`Client::set_answer_within`]).
     pub fn hear(&mut self) -> Result<Duration, RigError> {
         let heard = self.take_answers();
         if heard.is_err() {
@@ -99,7 +106,7 @@ impl<W: Wire> Client<W> {
                 return Err(RigError::malformed(
                     Device::Robot,
                     "transaction",
-                    "one that was sent",
+                    "that of a command",
                     found,
                 ));
             };
@@ -118,7 +125,7 @@ impl<W: Wire> Client<W> {
         Ok(missing)
     }
 
-    /// No pose goes out any more; answers to those that did may still come.
+    /// Ends the stream of poses. Responses to poses that were sent may still come.
     pub(super) fn end_servo(&mut self) {
         self.servo = None;
         for waiting in &mut self.unanswered {

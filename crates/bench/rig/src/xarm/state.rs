@@ -10,9 +10,9 @@ pub struct ResponseState(
 );
 
 impl ResponseState {
-    /// An error is not cleaned.
+    /// An error is not cleared.
     pub const ERROR: Self = Self(0x40);
-    /// A warning is not cleaned.
+    /// A warning is not cleared.
     pub const WARNING: Self = Self(0x20);
     /// The robot is not ready to move.
     pub const NOT_READY: Self = Self(0x10);
@@ -25,7 +25,7 @@ impl ResponseState {
         self.0 & bits.0 != 0
     }
 
-    /// All bits but these.
+    /// All bits except these.
     #[must_use]
     pub fn without(self, bits: Self) -> Self {
         Self(self.0 & !bits.0)
@@ -49,9 +49,9 @@ pub enum MotionState {
     Ready,
     /// Paused.
     Paused,
-    /// Stopped: no command moves it before it is set to motion again.
+    /// Stopped: no command moves the robot until its state is set to motion again.
     Stopped,
-    /// Any other state, by its code; it does not move.
+    /// Any other state, by its code. The robot does not move.
     NotReady(u8),
 }
 
@@ -68,7 +68,7 @@ impl MotionState {
         }
     }
 
-    /// Its code.
+    /// The code of the state.
     #[must_use]
     pub fn code(self) -> u8 {
         match self {
@@ -99,17 +99,17 @@ impl fmt::Display for MotionState {
 pub enum Mode {
     /// Plans moves to positions.
     Position = 0,
-    /// Follows the latest pose that it is sent.
+    /// Follows the latest pose that was sent.
     Servo = 1,
     /// Is led by hand.
     Teach = 2,
-    /// Follows velocities of its joints.
+    /// Follows joint velocities.
     JointVelocity = 4,
-    /// Follows velocities of its tool.
+    /// Follows velocities of the tool.
     CartesianVelocity = 5,
-    /// Plans anew on the way, for its joints.
+    /// Replans during motion, in joint space.
     OnlineJoint = 6,
-    /// Plans anew on the way, for its tool.
+    /// Replans during motion, in Cartesian space.
     OnlineCartesian = 7,
 }
 

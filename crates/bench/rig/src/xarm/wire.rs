@@ -1,4 +1,4 @@
-//! What carries commands and answers.
+//! Connections for commands and responses.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
@@ -6,11 +6,11 @@ use std::time::Duration;
 
 /// A connection in both directions.
 pub trait Wire: Read + Write {
-    /// Lets the next reads wait no longer than this, or not at all if it is zero; they then fail with
-    /// [`io::ErrorKind::TimedOut`] or [`io::ErrorKind::WouldBlock`].
+    /// Limits how long the next reads wait. Zero: they do not wait. A read without bytes then fails
+    /// with [`io::ErrorKind::TimedOut`] or [`io::ErrorKind::WouldBlock`].
     ///
     /// # Errors
-    /// What the operating system says.
+    /// The error of the operating system.
     fn limit_reads(&mut self, to: Duration) -> io::Result<()>;
 }
 
@@ -24,7 +24,7 @@ impl Wire for TcpStream {
     }
 }
 
-/// A connection of two halves, such as pipes or buffers. Its reads wait as long as its reader does.
+/// A connection of two halves, such as pipes or buffers. Reads wait as long as the reader does.
 #[derive(Clone, Debug)]
 pub struct Pair<R, W> {
     /// From the robot.

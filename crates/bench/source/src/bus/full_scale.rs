@@ -1,9 +1,9 @@
-//! Which scales reach a sensor's range.
+//! Full scales of the scale factors of chips.
 
 use phystac::{SCALES_PER_PA, Transfer};
 use twintac_sensor::Sensor;
 
-/// The largest pressure that counts of a scale can say, kPa.
+/// The largest pressure that counts of a scale can represent, kPa.
 #[must_use]
 pub fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
     let transfer = Transfer {
@@ -13,7 +13,8 @@ pub fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
     1e-3 * f64::from(transfer.full_scale_pa())
 }
 
-/// The scale of emulated barometers of which the description confirms none, counts per Pa: the finest that reaches the description's range.
+/// The scale of emulated barometers for which the description confirms none, counts per Pa: the
+/// finest scale that reaches the description's range.
 #[must_use]
 pub fn emulated_scale(sensor: &Sensor) -> u16 {
     let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= sensor.readout.max_kpa;

@@ -1,4 +1,4 @@
-//! The bus of a computer that runs Linux: a Raspberry Pi, or any other with `/dev/i2c-N`.
+//! The I²C bus of a computer that runs Linux, such as a Raspberry Pi: `/dev/i2c-N`.
 
 use std::fmt;
 use std::path::Path;
@@ -10,21 +10,21 @@ use phystac::{PhysTac, Settings};
 
 use crate::{BoxedClock, SourceError, TAXELS};
 
-/// Adapters say that nobody acknowledged in two ways (Linux, i2c/fault-codes): this is the one that `linux-embedded-hal` does not know,
-/// and the one of a Raspberry Pi.
+/// Adapters report a missing acknowledgement by two error numbers (Linux, i2c/fault-codes). This
+/// one is unknown to `linux-embedded-hal`, and it is the one of a Raspberry Pi.
 const EREMOTEIO: i32 = 121;
 const ETIMEDOUT: i32 = 110;
 
 /// An I²C bus of Linux.
 pub struct LinuxBus(I2cdev);
 
-/// Why a transaction on it failed.
+/// Why a transaction on the bus failed.
 pub struct LinuxBusError(I2CError);
 
-/// The driver on such a bus.
+/// The driver on an I²C bus of Linux.
 pub type LinuxPhysTac = PhysTac<LinuxBus, Delay, BoxedClock, TAXELS>;
 
-/// The driver of a described sensor on `/dev/i2c-N`. Nothing is sent yet.
+/// Creates the driver of a described sensor on `/dev/i2c-N`. Nothing is sent yet.
 ///
 /// # Errors
 /// The bus cannot be opened.

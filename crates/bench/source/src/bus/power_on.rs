@@ -1,4 +1,4 @@
-//! What counts stand for, checked against free air when the sensor is switched on.
+//! The meaning of counts, checked in free air when the sensor is switched on.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
@@ -10,17 +10,17 @@ use super::screening::{Screening, UNUSED};
 use crate::SourceError;
 use crate::error::bus_error;
 
-/// What a person knows of the parts and the place.
+/// What a person knows of the parts and of the location.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Known {
-    /// Counts per Pa; `None`: what the sensor's description says.
+    /// Counts per Pa. `None`: the value of the sensor's description.
     pub counts_per_pa: Option<u16>,
-    /// Altitude, m; `None`: up to 2000 m.
+    /// Altitude, m. `None`: any altitude up to 2000 m.
     pub altitude_m: Option<f32>,
 }
 
 impl Known {
-    /// With the scale of emulated barometers, where neither this nor the description has one.
+    /// Adds the scale of emulated barometers if neither `self` nor the description has a scale.
     #[must_use]
     pub fn or_emulated(self, sensor: &Sensor) -> Self {
         let is_described = sensor.readout.transfer.is_some() || sensor.readout.counts_per_pa.is_some();
@@ -32,33 +32,37 @@ impl Known {
     }
 }
 
-/// What was found when the sensor was switched on.
+/// Results of the check when the sensor is switched on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerOn {
-    /// What counts stand for, confirmed, where chips do not say it themselves.
+    /// The confirmed conversion from counts to pressure, if the chips do not know their own scale.
     pub transfer: Option<Transfer>,
-    /// From when on a taxel is suspect; its range is the description's.
+    /// Thresholds from which a taxel is suspect. The range is that of the description.
     pub thresholds: Thresholds,
-    /// What is odd but stops nothing, a sentence each.
+    /// Observations that do not prevent reading, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl PowerOn {
-    /// What makes messages of the frames to come.
+    /// Creates the screening of the frames that follow.
     #[must_use]
     pub(super) const fn screening<const N: usize>(&self) -> Screening<N> {
         Screening::new(self.transfer, self.thresholds)
     }
 }
 
-/// Reads a frame in free air, and says what counts stand for if somebody has confirmed it: `known`, or else the sensor's description. Chips that
-/// say it themselves need nobody.
+/// Reads a frame in free air, and returns the conversion from counts to pressure if a person has
+/// confirmed it: the value of `known`, or else that of the sensor's description. Chips that know
+/// their own scale need no confirmation.
 ///
-/// Counts per Pa are of two's complement, as the family's data sheet has it, unless only unsigned ones reach the description's range.
+/// Counts per Pa are in two's complement, as in the data sheet of the family, unless only unsigned
+/// counts reach the description's range.
 ///
 /// # Errors
-/// [`SourceError::ScaleUnconfirmed`]: nobody has; with the scale hint of free air. [`SourceError::NothingToScale`]: somebody has, of chips that say
-/// it themselves. [`SourceError::ScaleContradicted`], [`SourceError::NotFreeAir`]: free air is not what most taxels read. [`SourceError::Wire`].
+/// [`SourceError::ScaleUnconfirmed`]: nobody has confirmed the scale; the error has the hint from
+/// free air. [`SourceError::NothingToScale`]: a scale was given for chips that know their own.
+/// [`SourceError::ScaleContradicted`], [`SourceError::NotFreeAir`]: most taxels do not read free
+/// air. [`SourceError::Wire`]: the bus failed.
 pub fn power_on<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
     phystac: &mut PhysTac<I2C, D, C, N>,
     sensor: &Sensor,
@@ -86,7 +90,7 @@ pub fn power_on<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
     })
 }
 
-/// What somebody has confirmed.
+/// The conversion that a person has confirmed.
 fn confirmed(sensor: &Sensor, known: &Known) -> Option<Transfer> {
     let readout = &sensor.readout;
     let per_pa = |counts_per_pa: u16| {
@@ -105,7 +109,7 @@ fn confirmed(sensor: &Sensor, known: &Known) -> Option<Transfer> {
     typed.or(described).or(readout.counts_per_pa.map(per_pa))
 }
 
-/// What free air says.
+/// The hint for the scale that free air gives.
 struct Found {
     counts_per_pa: Option<u16>,
     text: String,
@@ -117,7 +121,7 @@ impl Found {
             Ok(found) => Self {
                 counts_per_pa: Some(found.counts_per_pa),
                 text: format!(
-                    "free air hints at {} counts per Pa: the taxels then read {:.1} to {:.1} kPa",
+                    "the readings in free air suggest {} counts per Pa: the taxels then read {:.1} to {:.1} kPa",
                     found.counts_per_pa,
                     1e-3 * found.lowest_pa,
                     1e-3 * found.highest_pa
@@ -125,7 +129,7 @@ impl Found {
             },
             Err(error) => Self {
                 counts_per_pa: None,
-                text: format!("free air gives no scale hint: {error}"),
+                text: format!("the readings in free air suggest no scale: {error}"),
             },
         }
     }
@@ -144,7 +148,8 @@ impl Found {
     }
 }
 
-/// That most taxels read free air. What is odd but stops nothing, a sentence each.
+/// Checks that most taxels read free air. Returns observations that do not prevent reading, one
+/// sentence each.
 fn check<const N: usize>(
     frame: &Frame<N>,
     sensor: &Sensor,
@@ -193,7 +198,7 @@ fn check<const N: usize>(
     let (most_kpa, max_kpa) = (1e-3 * transfer.full_scale_pa(), sensor.readout.max_kpa);
     if f64::from(most_kpa) < max_kpa {
         notes.push(format!(
-            "counts say at most {most_kpa:.0} kPa; the description's range ends at {max_kpa} kPa"
+            "counts go up to {most_kpa:.0} kPa only; the description's range ends at {max_kpa} kPa"
         ));
     }
     Ok(notes)

@@ -1,4 +1,4 @@
-//! One frame after the other.
+//! Reads one frame after the other.
 
 use std::fmt;
 use std::time::Duration;
@@ -12,21 +12,21 @@ use super::screening::Screening;
 use crate::error::bus_error;
 use crate::{Reading, SourceError, TactileSource};
 
-/// Reads frames and numbers them, on the caller's own thread.
+/// Reads frames and numbers them, on the caller's thread.
 pub struct FrameReader<I2C, D, C, const N: usize> {
     phystac: PhysTac<I2C, D, C, N>,
     screening: Screening<N>,
     sequence: u64,
-    /// Whether the barometers convert the next frame while this one is handed on.
+    /// Whether the barometers convert the next frame while the caller handles this one.
     is_ahead: bool,
     free: Free<I2C, D>,
 }
 
-/// What frees a bus that hangs.
+/// A function that frees a hung bus.
 type Free<I2C, D> = Box<dyn FnMut(&mut I2C, &mut D) + Send>;
 
 impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
-    /// Of a sensor that was switched on.
+    /// Reads a sensor that was switched on.
     #[must_use]
     pub fn new(phystac: PhysTac<I2C, D, C, N>, checked: &PowerOn) -> Self {
         Self {
@@ -38,14 +38,15 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
         }
     }
 
-    /// Lets the barometers convert the next frame while this one is handed on: the rate is higher, and a frame that is asked for late is older.
+    /// Lets the barometers convert the next frame while the caller handles this one. The rate is
+    /// then higher, but a frame that is requested late is older.
     #[must_use]
     pub fn converting_ahead(mut self) -> Self {
         self.is_ahead = true;
         self
     }
 
-    /// Frees a bus that hangs in this way; its channels are looked into anew.
+    /// Sets the function that frees a hung bus. After that the channels are examined again.
     #[must_use]
     pub fn freed_by(mut self, free: impl FnMut(&mut I2C, &mut D) + Send + 'static) -> Self {
         self.free = Box::new(free);
@@ -55,7 +56,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
     /// The next frame. A taxel that is saturated or frozen keeps its counts and has no pressure.
     ///
     /// # Errors
-    /// [`SourceError::Wire`]: what stops all taxels. The next call starts over.
+    /// [`SourceError::Wire`]: an error that affects all taxels. The next call starts again.
     pub fn read(&mut self) -> Result<Reading, SourceError> {
         let sequence = self.sequence;
         self.sequence += 1;
@@ -69,7 +70,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
             }
         };
         if self.is_ahead {
-            let _ = self.phystac.trigger(); // an error is found again by the next frame
+            let _ = self.phystac.trigger(); // if it fails, the next frame reports the error
         }
         Ok(Reading {
             sequence,

@@ -1,21 +1,22 @@
-//! Frames of the driver as messages of a log.
+//! Turns frames of the driver into messages of a log.
 
 use phystac::{Fault, Frame, Health, Pressure, Thresholds, Transfer};
 use twintac_log::{CountTransfer, TactileFrame, TaxelReading, TaxelState};
 
-/// What stands where no count needs a transfer.
+/// Placeholder for a sensor whose counts need no conversion.
 pub(crate) const UNUSED: Transfer = Transfer::per_pa(1);
 
-/// Makes messages of the driver's frames, one after the other.
+/// Turns frames of the driver into messages, one after the other.
 #[derive(Clone, Debug)]
 pub(crate) struct Screening<const N: usize> {
-    /// Of a sensor whose chips all know their scale, whatever.
+    /// The conversion from counts to pressure. Without meaning if all chips know their own scale.
     transfer: Transfer,
     health: Health<N>,
 }
 
 impl<const N: usize> Screening<N> {
-    /// Of a sensor whose counts stand for this, where its chips do not say so themselves; no frame of it has been seen.
+    /// `transfer` is the conversion of chips that do not know their own scale. No frame has been
+    /// screened yet.
     #[must_use]
     pub(crate) const fn new(transfer: Option<Transfer>, thresholds: Thresholds) -> Self {
         let transfer = match transfer {
@@ -28,7 +29,8 @@ impl<const N: usize> Screening<N> {
         }
     }
 
-    /// The next frame as a message. A taxel that is saturated or frozen keeps its counts and has no pressure.
+    /// The next frame as a message. A taxel that is saturated or frozen keeps its counts and has no
+    /// pressure.
     pub(crate) fn frame(&mut self, mut frame: Frame<N>) -> TactileFrame {
         let mut message = tactile_frame(&frame, &self.transfer);
         self.health.screen(&mut frame);
@@ -40,7 +42,7 @@ impl<const N: usize> Screening<N> {
     }
 }
 
-/// What a log says of the driver's transfer, which somebody who knows the parts has confirmed.
+/// The driver's conversion in the form of a log. A person who knows the parts has confirmed it.
 #[must_use]
 pub fn confirmed_transfer(transfer: &Transfer) -> CountTransfer {
     CountTransfer {
@@ -51,7 +53,7 @@ pub fn confirmed_transfer(transfer: &Transfer) -> CountTransfer {
     }
 }
 
-/// A frame as a message, before it is compared with the frames before it.
+/// A frame as a message, before it is compared with earlier frames.
 fn tactile_frame<const N: usize>(frame: &Frame<N>, transfer: &Transfer) -> TactileFrame {
     let taxels = frame.taxels.iter().zip(frame.read_us);
     let taxels = taxels.filter(|(taxel, _)| **taxel != Err(Fault::NotWired));

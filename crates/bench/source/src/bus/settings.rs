@@ -1,14 +1,14 @@
-//! How the driver finds a sensor's taxels.
+//! Settings by which the driver finds a sensor's taxels.
 
 use phystac::Settings;
 use twintac_sensor::Sensor;
 
 use crate::{SourceError, TAXELS};
 
-/// How the driver finds a sensor's taxels.
+/// Settings by which the driver finds a sensor's taxels.
 ///
 /// # Errors
-/// The sensor is not read this way.
+/// Fails if the sensor cannot be read by this driver.
 pub fn driver_settings(sensor: &Sensor) -> Result<Settings<TAXELS>, SourceError> {
     let problem = |problem: String| SourceError::Sensor {
         sensor: sensor.name.clone(),

@@ -1,20 +1,22 @@
-//! A microcontroller's clock, on the bench's.
+//! Converts the clock of a microcontroller to the bench clock.
 
-/// How much faster or slower than the bench's a board's crystal or resonator may be.
+/// Largest relative rate error of a board's crystal or resonator against the bench clock.
 const DRIFT: f64 = 1e-3;
 
-/// What a board's times are on the bench's clock.
+/// Converts times of a board to the bench clock.
 ///
-/// A frame arrives after it was read, sooner or later: the least of all delays tells the offset of the two clocks. It may grow by
-/// a thousandth of the time that passes, for a board whose clock is slow.
+/// A frame arrives some delay after it was read. The smallest delay so far gives the offset of the
+/// two clocks. The offset may grow by a thousandth of the elapsed time, to follow a board whose
+/// clock is slow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DeviceClock {
-    /// Bench's time at the board's zero, s, at a time of the board, s.
+    /// Bench time at the board's zero, s, and the board's time for which it was computed, s.
     offset: Option<(f64, f64)>,
 }
 
 impl DeviceClock {
-    /// When a frame was read on the bench's clock, s, from the board's time and the bench's time at which it arrived. Not after that.
+    /// The bench time at which a frame was read, s, from the board's time and from the bench time
+    /// of its arrival. It is never later than the arrival.
     pub(super) fn bench_s(&mut self, time_s: f64, arrived_s: f64) -> f64 {
         let now_s = arrived_s - time_s;
         let offset_s = match self.offset {
@@ -37,7 +39,7 @@ mod tests {
             let mut worst_s: f64 = 0.0;
             for frame in 0..20_000 {
                 let true_s = 10.0 + 0.01 * f64::from(frame);
-                // Delays of 2 ms, and now and then of up to 20.
+                // Delays of 2 ms, and sometimes up to 20 ms.
                 let delay_s = 0.002 + 0.001 * f64::from(frame * 7 % 19);
                 let bench_s = clock.bench_s(true_s * rate + 1234.5, true_s + delay_s);
                 if frame > 100 {

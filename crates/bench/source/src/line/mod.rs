@@ -21,13 +21,13 @@ use twintac_log::{TactileFrame, TaxelReading, TaxelState};
 
 use crate::{BoxedClock, Reading, SourceError, TactileSource};
 
-/// Reads what a [`Description`] describes, from any wire.
+/// Reads frames as a [`Description`] describes them, from any connection.
 pub struct LineSource {
     wire: Box<dyn Wire>,
     decoder: Decoder,
     clock: BoxedClock,
     device_clock: DeviceClock,
-    /// From here on numbers are counted, where the line has none.
+    /// The number of the next frame, for a line that has no numbers.
     next_sequence: u64,
     waiting: VecDeque<Reading>,
     is_over: bool,
@@ -35,10 +35,10 @@ pub struct LineSource {
 }
 
 impl LineSource {
-    /// A line of a sensor of so many taxels. `clock` is the bench's, µs.
+    /// Reads a line of a sensor with `n_taxels` taxels. `clock` is the bench clock, µs.
     ///
     /// # Errors
-    /// The description has another number of pressures.
+    /// Fails if the description has another number of pressures.
     pub fn new(
         wire: impl Wire + 'static,
         description: &Description,
@@ -58,10 +58,10 @@ impl LineSource {
         })
     }
 
-    /// What comes over a serial port, as a file describes it (TOML).
+    /// Reads a serial port. The TOML file `line` describes what arrives there.
     ///
     /// # Errors
-    /// A file that is wrong, or of another number of taxels; a port that cannot be opened.
+    /// A file that is wrong or has another number of taxels; a port that cannot be opened.
     pub fn serial(port: &str, line: &Path, n_taxels: usize, clock: BoxedClock) -> Result<Self, SourceError> {
         let description = Description::read(line)?;
         check(&description, n_taxels)?;
@@ -73,10 +73,11 @@ impl LineSource {
         )
     }
 
-    /// What comes as datagrams to an address of this computer, as a file describes it (TOML).
+    /// Reads datagrams that arrive at an address of this computer. The TOML file `line` describes
+    /// them.
     ///
     /// # Errors
-    /// A file that is wrong, or of another number of taxels; an address that cannot be listened at.
+    /// A file that is wrong or has another number of taxels; an address that cannot be bound.
     pub fn udp(address: &str, line: &Path, n_taxels: usize, clock: BoxedClock) -> Result<Self, SourceError> {
         let description = Description::read(line)?;
         let socket = UdpSocket::bind(address).map_err(|error| SourceError::Open {
@@ -86,13 +87,13 @@ impl LineSource {
         Self::new(socket, &description, n_taxels, clock)
     }
 
-    /// What was on the line so far.
+    /// Counts of what was on the line so far.
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.decoder.tally()
     }
 
-    /// Takes what has come.
+    /// Decodes the `n` bytes that have arrived.
     fn take(&mut self, n: usize) {
         let arrived_us = (self.clock)();
         let mut frames = Vec::new();
@@ -139,7 +140,7 @@ impl LineSource {
     }
 }
 
-/// Why a taxel has no pressure, if it has none: what the line says, if it says what is known.
+/// Why a taxel has no pressure: the fault that the line reports if it is a known one, else missing.
 fn state(pressure_kpa: Option<f64>, fault: Option<u8>) -> TaxelState {
     let known = fault
         .and_then(TaxelState::from_code)
@@ -150,7 +151,7 @@ fn state(pressure_kpa: Option<f64>, fault: Option<u8>) -> TaxelState {
     }
 }
 
-/// That frames have a pressure of each taxel.
+/// Checks that frames have one pressure for each taxel.
 fn check(description: &Description, n_taxels: usize) -> Result<(), SourceError> {
     let n_pressures = description.n_pressures();
     if n_pressures == n_taxels {

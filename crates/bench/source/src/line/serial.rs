@@ -9,17 +9,18 @@ use twintac_line::Description;
 use super::wire::Wire;
 use crate::SourceError;
 
-/// A serial port that was opened.
+/// An open serial port.
 pub struct SerialLine {
     port: Box<dyn SerialPort>,
     patience: Duration,
 }
 
 impl SerialLine {
-    /// Opens a port such as `/dev/ttyACM0` or `COM3`, waits for a board that starts anew, and sends what it is to be sent.
+    /// Opens a port such as `/dev/ttyACM0` or `COM3`, waits for a board that restarts, and sends
+    /// the text that the description has for it.
     ///
     /// # Errors
-    /// A port that cannot be opened, or does not take it.
+    /// A port that cannot be opened, or does not accept the text.
     pub fn open(path: &str, description: &Description) -> Result<Self, SourceError> {
         let serial = &description.serial;
         let failed = |problem: String| SourceError::Open {
@@ -49,7 +50,7 @@ impl Wire for SerialLine {
         }
         match self.port.read(bytes) {
             Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(0),
-            // A port that was pulled out gives nothing, at once.
+            // A port that was unplugged returns at once without bytes.
             Ok(0) => Err(io::Error::new(ErrorKind::BrokenPipe, "the port is gone")),
             read => read,
         }

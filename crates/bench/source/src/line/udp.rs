@@ -1,4 +1,4 @@
-//! Datagrams, each of whole lines or packets.
+//! Datagrams of lines or packets.
 
 use std::io::{self, ErrorKind};
 use std::net::UdpSocket;
@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use super::wire::Wire;
 
-/// A socket that hears datagrams. One that ends in the middle of a line ends that line.
+/// A socket that receives datagrams. The end of a datagram is no boundary: an unfinished line goes
+/// on in the next datagram.
 impl Wire for UdpSocket {
     fn read(&mut self, bytes: &mut [u8], patience: Duration) -> io::Result<usize> {
         self.set_read_timeout(Some(patience.max(Duration::from_millis(1))))?;

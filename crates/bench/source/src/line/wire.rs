@@ -1,13 +1,14 @@
-//! What bytes come over.
+//! Connections from which a line's bytes come.
 
 use std::io;
 use std::time::Duration;
 
-/// Bytes as they come, from whatever.
+/// A source of bytes.
 pub trait Wire: Send {
-    /// Waits for bytes, for so long at most, and says how many came; 0: none did.
+    /// Waits for bytes for at most `patience`, and returns how many have arrived; 0 if none.
     ///
     /// # Errors
-    /// What the operating system says; the end of what there is, as [`UnexpectedEof`](io::ErrorKind::UnexpectedEof).
+    /// An error of the operating system; the end of the data, as
+    /// [`UnexpectedEof`](io::ErrorKind::UnexpectedEof).
     fn read(&mut self, bytes: &mut [u8], patience: Duration) -> io::Result<usize>;
 }

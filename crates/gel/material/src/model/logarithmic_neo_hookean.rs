@@ -1,6 +1,7 @@
-//! `W = μ/2 (I1 - 3) - μ ln J`, with `λ/2 (θ - 1)²` of the mean volume change on top: the compressible neo-Hookean material that resists
-//! collapse with a logarithm (Ogden, Non-Linear Elastic Deformations, 1984). The wide-spread `λ/2 (ln J)²` instead is the same
-//! but for the third order of the volume change, which in a gel is a few per cent at most.
+//! `W = μ/2 (I1 - 3) - μ ln J`, to which `λ/2 (θ - 1)²` of the averaged volume change is added: the
+//! compressible neo-Hookean material whose logarithm resists collapse (Ogden, Non-Linear Elastic
+//! Deformations, 1984). The widespread variant with `λ/2 (ln J)²` differs in the third order of the
+//! volume change, which in a gel is a few per cent at most.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
-//! All models, each a file here. A new one needs two lines below: its module, and its entry in the list at the end.
+//! All models, one file each. A new model needs two lines below: its module, and its entry in the
+//! list at the end.
 
 mod logarithmic_neo_hookean;
 mod mooney_rivlin;
@@ -13,16 +14,16 @@ use crate::{Elastic, Law, LawProperties, MaterialError};
 
 pub use ogden::OgdenTerm;
 
-/// Work that is done with the law of a model, whichever that is.
+/// Code that can work with the law of any model.
 pub trait Visitor {
     /// The result.
     type Output;
 
-    /// Does the work.
+    /// Works with the law.
     fn visit<L: Law>(self, law: L) -> Self::Output;
 }
 
-/// Makes the enumeration of models from their types, and the names that files have for them.
+/// Makes the enumeration of models from their types and the names that they have in files.
 macro_rules! models {
     ($($file:ident::$model:ident = $name:literal,)+) => {
         $(pub use $file::$model;)+
@@ -35,7 +36,7 @@ macro_rules! models {
         }
 
         impl Model {
-            /// The name that files have for it.
+            /// The name that it has in files.
             #[must_use]
             pub fn name(&self) -> &'static str {
                 match self {
@@ -43,13 +44,14 @@ macro_rules! models {
                 }
             }
 
-            /// One of each model, of much the same stiffness: for tests that all models have to pass.
+            /// One example of each model, all of similar stiffness: for tests that all models have
+            /// to pass.
             #[must_use]
             pub fn examples() -> Vec<Self> {
                 vec![$(Self::$model($model::example()),)+]
             }
 
-            /// What its law is like.
+            /// The properties of its law.
             #[must_use]
             pub fn properties(&self) -> LawProperties {
                 match self {
@@ -57,7 +59,7 @@ macro_rules! models {
                 }
             }
 
-            /// Does some work with its law.
+            /// Calls `visitor` with its law.
             #[inline(always)]
             pub fn visit<V: Visitor>(&self, visitor: V) -> V::Output {
                 match self {
@@ -65,7 +67,7 @@ macro_rules! models {
                 }
             }
 
-            /// Refuses constants that are not those of a material.
+            /// Checks that the constants are those of a material.
             ///
             /// # Errors
             /// The first constant that is wrong.
@@ -83,7 +85,8 @@ macro_rules! models {
                 }
             }
 
-            /// The constants besides the shear modulus, for people to read: `C10 8 kPa, C01 3.5 kPa`. May be empty.
+            /// The constants other than the shear modulus, as text: `C10 8 kPa, C01 3.5 kPa`. May
+            /// be empty.
             #[must_use]
             pub fn in_words(&self) -> String {
                 match self {
@@ -91,8 +94,9 @@ macro_rules! models {
                 }
             }
 
-            /// The modulus κ of the mean volume change, kPa, with which the bulk modulus at small strain is the one given: the difference
-            /// between that and the law's own resistance to a change of volume. Positive for a valid material.
+            /// The modulus κ of the averaged volume change, kPa, that gives this bulk modulus at
+            /// small strain: the bulk modulus minus the law's own resistance to a change of volume.
+            /// It is positive for a valid material.
             #[must_use]
             pub fn volume_modulus_kpa(&self, bulk_modulus_kpa: f64) -> f64 {
                 match self {

@@ -1,4 +1,5 @@
-//! `W̄ = μ/2 (Ī1 - 3)`: rubber as a network of Gaussian chains (Treloar, 1943). Good to some 50 % of strain.
+//! `W̄ = μ/2 (Ī1 - 3)`: rubber as a network of Gaussian chains (Treloar, 1943). Accurate up to a
+//! strain of about 50 %.
 
 use serde::{Deserialize, Serialize};
 

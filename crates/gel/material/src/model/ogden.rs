@@ -1,6 +1,7 @@
 //! `W̄ = Σ_p μ_p/α_p (λ̄1^α_p + λ̄2^α_p + λ̄3^α_p - 3)` (Ogden, Proc. R. Soc. Lond. A 326, 1972).
 //!
-//! Its shear modulus is `½ Σ μ_p α_p`. Other programs write `2 μ_p/α_p²` for the factor: their `μ_p` times `2/α_p` is the one meant here.
+//! Its shear modulus is `½ Σ μ_p α_p`. Other programs use the factor `2 μ_p/α_p²`: multiply their
+//! `μ_p` by `2/α_p` to get the `μ_p` of this program.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +22,7 @@ pub struct Ogden {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OgdenTerm {
-    /// Its modulus μ, kPa, of the sign of α if the term is to be stable for itself.
+    /// Its modulus μ, kPa. It has the sign of α if the term by itself is stable.
     pub mu_kpa: f64,
     /// Its exponent α.
     pub alpha: f64,
@@ -124,7 +125,8 @@ impl StretchLaw for &Ogden {
 mod tests {
     use super::*;
 
-    /// The constants of `materials/ecoflex-00-30-ogden.toml` and what their source has for a pulled strip.
+    /// The constants of `materials/ecoflex-00-30-ogden.toml`, and the stresses of a stretched strip
+    /// in their source.
     #[test]
     fn the_published_series_gives_the_published_stresses() {
         let terms = [(-0.98077, -3.848), (67.1192, 0.663), (1.69183, 4.225)];

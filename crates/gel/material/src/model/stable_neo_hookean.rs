@@ -1,9 +1,11 @@
 //! The stable neo-Hookean energy (Smith, de Goes and Kim, ACM Trans. Graph. 37, 2018, section 3.4):
-//! `m/2 (I1 - 3) + l/2 (J - a)² - m/2 ln(I1 + 1)` with `a = 1 + m/l - m/(4 l)`, `m = 4/3 μ` and `l = λ + 5/6 μ` of Lamé's constants. Smooth for
-//! any deformation, inverted ones included.
+//! `m/2 (I1 - 3) + l/2 (J - a)² - m/2 ln(I1 + 1)` with `a = 1 + m/l - m/(4 l)`, `m = 4/3 μ` and
+//! `l = λ + 5/6 μ`, where λ and μ are Lamé's constants. It is smooth for every deformation,
+//! including inverted ones.
 //!
-//! Since `l/2 (J - a)² = l/2 (J - 1)² - 3/4 m (J - 1) + constant`, its parabola in the volume is that of the mean volume change, and what is
-//! left is `W = m/2 (I1 - 3) - m/2 ln((I1 + 1)/4) - 3/4 m (J - 1)`.
+//! Since `l/2 (J - a)² = l/2 (J - 1)² - 3/4 m (J - 1) + constant`, its quadratic term in the volume
+//! becomes the term of the averaged volume change. The remaining energy is
+//! `W = m/2 (I1 - 3) - m/2 ln((I1 + 1)/4) - 3/4 m (J - 1)`.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +14,8 @@ use crate::stretch_law::NoStretches;
 use crate::wide::{Real, Wide};
 use crate::{Curvatures, Elastic, Invariants, Law, MaterialError, Slopes};
 
-/// `m/2 (I1 - 3) - m/2 ln((I1 + 1)/4) - 3/4 m (J - 1)` with `m = 4/3 μ`, for inverted tetrahedra as well (Smith, de Goes and Kim, 2018)
+/// `m/2 (I1 - 3) - m/2 ln((I1 + 1)/4) - 3/4 m (J - 1)` with `m = 4/3 μ`, for inverted tetrahedra as
+/// well (Smith, de Goes and Kim, 2018)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StableNeoHookean {

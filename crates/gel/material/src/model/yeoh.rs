@@ -1,4 +1,5 @@
-//! `W̄ = Σ Ci0 (Ī1 - 3)^i`, i = 1, 2, 3 (Yeoh, Rubber Chem. Technol. 66, 1993): stiffens at large strain.
+//! `W̄ = Σ Ci0 (Ī1 - 3)^i`, i = 1, 2, 3 (Yeoh, Rubber Chem. Technol. 66, 1993): stiffens at large
+//! strain.
 
 use serde::{Deserialize, Serialize};
 

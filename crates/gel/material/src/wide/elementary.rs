@@ -1,8 +1,9 @@
-//! Elementary functions as arithmetic without branches: the compiler can use vectors for them, and they give the same bits on every machine.
+//! Elementary functions as arithmetic without branches, so that the compiler can use vector
+//! instructions. They give the same bits on every machine.
 
 use super::plus_product::PlusProduct;
 
-/// A number that has a logarithm and an exponential.
+/// A number with a square root, a logarithm and an exponential.
 pub trait Elementary: Sized {
     /// Square root.
     fn sqrt(self) -> Self;
@@ -10,7 +11,7 @@ pub trait Elementary: Sized {
     /// Natural logarithm of a number above zero, to round-off.
     fn ln(self) -> Self;
 
-    /// `e^x`, to round-off; beyond the range of the numbers, some large or small number.
+    /// `e^x`, to round-off; beyond the range of the number type, some large or small number.
     fn exp(self) -> Self;
 }
 
@@ -48,7 +49,8 @@ impl Elementary for f64 {
 
     #[inline(always)]
     fn ln(self) -> Self {
-        // self = 2^exponent mantissa, the mantissa between √½ and √2, and ln m = 2 atanh((m - 1)/(m + 1)).
+        // `self = 2^exponent · m`, with the mantissa `m` between √½ and √2, and
+        // `ln m = 2 atanh((m - 1)/(m + 1))`.
         let exponent = ((self.to_bits().wrapping_sub(0x3fe6_a09e_667f_3bcd) as i64) >> 52) as i32;
         let mantissa = Self::from_bits(self.to_bits().wrapping_sub((i64::from(exponent) << 52) as u64));
         let s = (mantissa - 1.0) / (mantissa + 1.0);
@@ -58,7 +60,8 @@ impl Elementary for f64 {
 
     #[inline(always)]
     fn exp(self) -> Self {
-        // The upper bits of ln 2, whose multiples by whole numbers below 2048 are exact, and the rest.
+        // The upper bits of ln 2, whose product with an integer below 2048 is exact, and the
+        // remaining bits.
         const UPPER: f64 = 0.693_147_180_369_123_8;
         const LOWER: f64 = 1.908_214_929_270_587_7e-10;
         let x = self.clamp(-700.0, 700.0);

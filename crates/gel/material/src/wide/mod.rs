@@ -1,4 +1,4 @@
-//! Eight numbers side by side, for which the compiler uses the vectors of the processor.
+//! Eight numbers side by side, for which the compiler uses the vector registers of the processor.
 
 mod elementary;
 mod plus_product;
@@ -8,10 +8,10 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use elementary::Elementary;
 pub use plus_product::PlusProduct;
 
-/// Numbers side by side.
+/// Number of values side by side.
 pub const LANES: usize = 8;
 
-/// A number in single or double precision.
+/// A number of single or double precision.
 pub trait Real:
     Copy
     + Default
@@ -27,7 +27,7 @@ pub trait Real:
     /// A relative difference below round-off.
     const ROUND_OFF: Self;
 
-    /// The nearest number.
+    /// The nearest number of this type.
     fn from_f64(value: f64) -> Self;
 
     /// `x^(-1/3)` of a number above zero.
@@ -44,7 +44,8 @@ impl Real for f64 {
 
     #[inline(always)]
     fn inverse_cube_root(self) -> Self {
-        // 4/3 of the exponent's bias less a third of the number's bits is right to some 3 %; Halley's method does the rest.
+        // 4/3 of the bias of the exponent minus a third of the number's bits has an error of about
+        // 3 %; Halley's method does the rest.
         let mut root = Self::from_bits(0x553e_f0ff_289d_d796_u64.wrapping_sub(self.to_bits() / 3));
         for _ in 0..3 {
             let error = 1.0 - self * root * root * root;
@@ -79,14 +80,14 @@ impl Real for f32 {
 pub struct Wide<T>(pub [T; LANES]);
 
 impl<T: Real> Wide<T> {
-    /// Eight times the same.
+    /// Eight times the same number.
     #[inline(always)]
     #[must_use]
     pub fn splat(value: f64) -> Self {
         Self([T::from_f64(value); LANES])
     }
 
-    /// `self + a b`, as [`PlusProduct`] has it.
+    /// `self + a b`; see [`PlusProduct`].
     #[inline(always)]
     #[must_use]
     pub fn plus_product(mut self, a: Self, b: Self) -> Self {
@@ -135,8 +136,8 @@ impl<T: Real> Wide<T> {
         self.map(T::exp)
     }
 
-    /// `(e^a - e^b)/(a - b)` from `a` and `b` and their exponentials, exact where they are close as well: there, with `z = (a - b)/2`, it is
-    /// `√(e^a e^b) sinh(z)/z`.
+    /// `(e^a - e^b)/(a - b)` from `a`, `b` and their exponentials. It is accurate for close values
+    /// as well, where it is computed as `√(e^a e^b) sinh(z)/z` with `z = (a - b)/2`.
     #[inline(always)]
     #[must_use]
     pub fn exponential_quotient([a, b]: [Self; 2], [exp_a, exp_b]: [Self; 2]) -> Self {
@@ -156,7 +157,7 @@ impl<T: Real> Wide<T> {
         quotient
     }
 
-    /// The same function of each.
+    /// The function applied to each number.
     #[inline(always)]
     #[must_use]
     pub fn map(mut self, f: impl Fn(T) -> T) -> Self {
@@ -179,7 +180,7 @@ impl Wide<f64> {
         out
     }
 
-    /// The smallest, or NaN if one is NaN.
+    /// The smallest number, or NaN if one of them is NaN.
     #[inline(always)]
     #[must_use]
     pub fn least(self) -> f64 {
@@ -195,7 +196,7 @@ impl Wide<f64> {
     }
 }
 
-/// The smaller of two, or NaN if one is NaN.
+/// The smaller of two numbers, or NaN if one of them is NaN.
 #[inline(always)]
 #[must_use]
 pub fn least(a: f64, b: f64) -> f64 {

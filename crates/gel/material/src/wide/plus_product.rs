@@ -1,9 +1,10 @@
-//! A product added to a number.
+//! Multiplication and addition in one operation.
 
-/// A number to which a product is added.
+/// A number to which a product can be added.
 pub trait PlusProduct: Sized {
-    /// `self + a b`, rounded once where the processor has an instruction for that. WebAssembly has none: there it is rounded twice, as the routine that rounds
-    /// once takes two thirds of a press.
+    /// `self + a b`, rounded once if the processor has an instruction for that. WebAssembly has
+    /// none: there it is rounded twice, because the routine that rounds once takes two thirds of
+    /// the time of a press.
     #[must_use]
     fn plus_product(self, a: Self, b: Self) -> Self;
 }

@@ -1,4 +1,4 @@
-//! Making a mesh of the contents of a file.
+//! Makes a mesh from the contents of a file.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,12 @@ use crate::quality::check_volumes;
 use crate::tet_mesh::signed_volume_mm3;
 use crate::{MeshError, TetMesh};
 
-/// Nodes within this part of the mesh's diagonal above its lowest node are bonded: twice fTetWild's default envelope.
+/// Nodes within this fraction of the mesh's diagonal above the lowest node are bonded: twice the
+/// default envelope of fTetWild.
 const BOARD_TOLERANCE: f64 = 2e-3;
 
-/// Part of the volume of a regular tetrahedron with the same longest edge that every tetrahedron must have.
+/// Smallest volume of a tetrahedron, as a fraction of that of a regular one with the same longest
+/// edge.
 const LEAST_VOLUME_SHARE: f64 = 1e-6;
 
 /// The contents of a file.
@@ -33,13 +35,13 @@ pub(super) struct NodeEntry {
     pub(super) at: usize,
 }
 
-/// A tetrahedron by the tags of its nodes, and its position in the file.
+/// A tetrahedron, given by the tags of its nodes, and its position in the file.
 pub(super) struct TetEntry {
     pub(super) tags: [u64; 4],
     pub(super) at: usize,
 }
 
-/// Numbers the nodes that are used, turns inverted tetrahedra and names the nodes.
+/// Numbers the nodes that are used, turns inverted tetrahedra, and sets the node sets.
 pub(super) fn assemble(input: &Input, contents: Contents) -> Result<TetMesh, MeshError> {
     let Contents {
         mut nodes,

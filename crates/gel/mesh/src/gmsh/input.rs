@@ -10,7 +10,7 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// A position in a file, and how to read on.
+/// A position in a file, and the encoding of what follows.
 pub(super) struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -26,17 +26,17 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Bytes read so far.
+    /// Number of bytes read so far.
     pub(super) fn position(&self) -> usize {
         self.at
     }
 
-    /// The error that something else was expected here.
+    /// An error at this position: something else was expected.
     pub(super) fn error<T>(&self, expected: &str, found: impl Into<String>) -> Result<T, MeshError> {
         self.error_at(self.at, expected, found)
     }
 
-    /// The error that something else was expected at a position.
+    /// An error at another position: something else was expected.
     pub(super) fn error_at<T>(
         &self,
         at: usize,
@@ -69,14 +69,14 @@ impl<'a> Input<'a> {
         (self.at + skipped + length, &rest[skipped..skipped + length])
     }
 
-    /// The next word of text, moving past it; none at the end of the file.
+    /// The next word of text, moving past it; `None` at the end of the file.
     pub(super) fn word(&mut self) -> Option<&'a [u8]> {
         let (end, word) = self.peek();
         self.at = end;
         (!word.is_empty()).then_some(word)
     }
 
-    /// A number in words, whatever the encoding.
+    /// A number that is written as text, whatever the encoding.
     pub(super) fn text_number<N: std::str::FromStr>(&mut self, expected: &str) -> Result<N, MeshError> {
         let (end, word) = self.peek();
         match std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
@@ -104,7 +104,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Moves behind the end of the line, where binary data start.
+    /// Moves past the end of the line, where binary data start.
     pub(super) fn end_line(&mut self) -> Result<(), MeshError> {
         let rest = &self.bytes[self.at..];
         let blanks = rest
@@ -123,10 +123,10 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Moves behind the line that ends a section.
+    /// Moves past the line that ends a section.
     pub(super) fn skip_section(&mut self, name: &str) -> Result<(), MeshError> {
         let end = format!("\n$End{name}");
-        // The newline before it may just have been passed.
+        // The line break before it may just have been passed.
         let from = self.at.saturating_sub(1);
         match self.bytes[from..]
             .windows(end.len())
@@ -140,7 +140,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Moves behind `$End<name>`, which must come next.
+    /// Moves past `$End<name>`, which must come next.
     pub(super) fn end_section(&mut self, name: &str) -> Result<(), MeshError> {
         let (end, word) = self.peek();
         if word.strip_prefix(b"$End") == Some(name.as_bytes()) {
@@ -150,7 +150,7 @@ impl<'a> Input<'a> {
         self.error_at(end - word.len(), &format!("`$End{name}`"), shown(word))
     }
 
-    /// A whole number that binary files keep in four bytes.
+    /// An integer of four bytes in binary files.
     pub(super) fn int(&mut self, expected: &str) -> Result<i64, MeshError> {
         match self.encoding {
             Encoding::Text => self.text_number(expected),
@@ -159,7 +159,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// A whole number that binary files keep in eight bytes.
+    /// An integer of eight bytes in binary files.
     pub(super) fn size(&mut self, expected: &str) -> Result<u64, MeshError> {
         match self.encoding {
             Encoding::Text => self.text_number(expected),
@@ -168,7 +168,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// A real number.
+    /// A floating-point number.
     pub(super) fn real(&mut self, expected: &str) -> Result<f64, MeshError> {
         match self.encoding {
             Encoding::Text => self.text_number(expected),
@@ -177,9 +177,10 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Checks that the file is long enough for a number of items of so many numbers each, so that no count is trusted without a check.
+    /// Checks that the file is long enough for `count` items of `numbers_each` numbers, so that no
+    /// count of a file is trusted.
     pub(super) fn fits(&self, count: u64, numbers_each: u64, expected: &str) -> Result<usize, MeshError> {
-        // A number takes two bytes of text (digit and blank) or four in binary, at least.
+        // A number takes at least two bytes of text (a digit and a blank), or four bytes in binary.
         let least = if self.encoding == Encoding::Text { 2 } else { 4 };
         let left = (self.bytes.len() - self.at) as u64 + 1;
         let needed = count.saturating_mul(numbers_each.saturating_mul(least));
@@ -204,7 +205,7 @@ impl<'a> Input<'a> {
     }
 }
 
-/// Bytes for a message, shortened.
+/// Bytes as shown in a message, shortened.
 pub(super) fn shown(word: &[u8]) -> String {
     if word.is_empty() {
         return "the end of the file".to_owned();

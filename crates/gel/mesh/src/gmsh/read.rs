@@ -1,4 +1,4 @@
-//! Reading a `.msh` file.
+//! Reads a `.msh` file.
 
 use glam::DVec3;
 
@@ -7,19 +7,23 @@ use super::elements::{Use, nodes_of, use_of};
 use super::input::{Encoding, Input, shown};
 use crate::{MeshError, TetMesh};
 
-/// Coordinates beyond this count as a damaged file, in its unit.
+/// Coordinates beyond this value, in the unit of the file, count as a damaged file.
 const FARTHEST: f64 = 1e6;
 
-/// Reads a mesh in which a length of 1 is so many mm.
+/// Reads a mesh in which a length of 1 is `mm_per_unit` mm.
 ///
-/// Inverted tetrahedra are turned, nodes that no tetrahedron uses are dropped, and a tetrahedron that is listed twice, as one of two physical groups,
-/// is one. Points, lines and faces are not needed. The bonded nodes are those that the node data named
-/// "bonded" tell, as [`super::write`] writes them; without such data, those within 0.2 % of the mesh's diagonal above its lowest node.
+/// Inverted tetrahedra are turned, nodes that no tetrahedron uses are dropped, and a tetrahedron
+/// that is listed twice (in two physical groups) is taken once. Points, lines and faces are
+/// ignored. The bonded nodes are those of the node data named "bonded", which [`super::write`]
+/// writes. Without such data they are the nodes within 0.2 % of the mesh's diagonal above the
+/// lowest node.
 ///
 /// # Errors
-/// [`MeshError::File`] with the line or byte where the file is not what it should be, also for hexahedra, prisms and pyramids;
-/// [`MeshError::Degenerate`] for a tetrahedron without volume, [`MeshError::Empty`] for a file without tetrahedra, [`MeshError::Extent`] for a size
-/// that `mm_per_unit` does not explain, [`MeshError::NodesTwice`] and [`MeshError::Overlap`] for bodies that are not meshed as one.
+/// [`MeshError::File`] with the line or byte where the file is not as expected, also for hexahedra,
+/// prisms and pyramids; [`MeshError::Degenerate`] for a tetrahedron without volume;
+/// [`MeshError::Empty`] for a file without tetrahedra; [`MeshError::Extent`] for a size that is not
+/// plausible with this `mm_per_unit`; [`MeshError::NodesTwice`] and [`MeshError::Overlap`] for
+/// bodies that are not meshed as one.
 pub fn read(bytes: &[u8], mm_per_unit: f64) -> Result<TetMesh, MeshError> {
     let mut input = Input::new(bytes);
     let version = read_format(&mut input)?;
@@ -65,7 +69,7 @@ enum Version {
     Four,
 }
 
-/// Reads the first section and leaves the encoding in the input.
+/// Reads the first section, and sets the encoding of the input.
 fn read_format(input: &mut Input) -> Result<Version, MeshError> {
     match input.word() {
         Some(b"$MeshFormat") => {}
@@ -166,7 +170,7 @@ fn read_elements_2(input: &mut Input, encoding: Encoding, contents: &mut Content
     let count = input.fits(count, 2, "the number of elements")?;
     let mut done = 0;
     while done < count {
-        // In text every element has a header of its own, after its number.
+        // In text files every element has a header of its own, after its number.
         if encoding == Encoding::Text {
             input.int("the number of an element")?;
         }
@@ -235,7 +239,7 @@ fn read_elements_4(input: &mut Input, encoding: Encoding, contents: &mut Content
     Ok(())
 }
 
-/// Fails for an element that a mesh of tetrahedra can't have; it begins at a position.
+/// Fails for an element that a mesh of tetrahedra cannot have; `at` is its position.
 fn check_use(input: &Input, kind: i64, at: usize, entity: i64) -> Result<(), MeshError> {
     match use_of(kind) {
         Use::Other(name) => {
@@ -246,7 +250,7 @@ fn check_use(input: &Input, kind: i64, at: usize, entity: i64) -> Result<(), Mes
     }
 }
 
-/// Reads the nodes of an element and keeps them if it is a tetrahedron.
+/// Reads the nodes of an element, and keeps them if it is a tetrahedron.
 fn read_element(
     input: &mut Input,
     kind: i64,
@@ -270,7 +274,8 @@ fn read_element(
     Ok(())
 }
 
-/// Reads node data if they are those that say which nodes are bonded, else stops somewhere before their end.
+/// Reads node data if they state which nodes are bonded; otherwise stops somewhere before their
+/// end.
 fn read_node_data(input: &mut Input, encoding: Encoding, contents: &mut Contents) -> Result<(), MeshError> {
     let n_names: u32 = input.text_number("the number of names")?;
     if n_names == 0 || input.quoted()? != super::BONDED.as_bytes() {
@@ -302,7 +307,7 @@ fn read_node_data(input: &mut Input, encoding: Encoding, contents: &mut Contents
     Ok(())
 }
 
-/// From the text of a section's head to the encoding of its body.
+/// Goes from the text of a section's head to the encoding of its body.
 fn switch(input: &mut Input, encoding: Encoding) -> Result<(), MeshError> {
     if encoding != Encoding::Text {
         input.end_line()?;
@@ -311,7 +316,7 @@ fn switch(input: &mut Input, encoding: Encoding) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// A node's tag that binary files keep in four bytes.
+/// A tag of a node, of four bytes in binary files.
 fn tag(input: &mut Input) -> Result<u64, MeshError> {
     let tag = input.int("the tag of a node")?;
     match u64::try_from(tag) {

@@ -1,4 +1,5 @@
-//! Whether the tetrahedra of a file are one mesh: joined at common nodes, none within another.
+//! Checks that the tetrahedra of a file form one mesh: they are joined at common nodes, and none
+//! overlaps another.
 
 use std::collections::BTreeMap;
 
@@ -9,12 +10,14 @@ use crate::boundary::FACES;
 use crate::tet_mesh::signed_volume_mm3;
 use crate::{MeshError, TetMesh};
 
-/// Nodes of the boundary that are nearer than this part of the mesh's diagonal are at the same place.
+/// Nodes of the boundary that are nearer to each other than this fraction of the mesh's diagonal
+/// are at the same position.
 const SAME_PLACE: f64 = 1e-6;
-/// Part of the volume by which the boundary may enclose less or more than the tetrahedra have.
+/// Largest difference between the volume that the boundary encloses and that of the tetrahedra, as
+/// a fraction.
 const VOLUME_TOLERANCE: f64 = 1e-6;
 
-/// Checks a mesh whose nodes have these tags in the file.
+/// Checks a mesh. `tags` are those of its nodes in the file.
 pub(super) fn check(mesh: &TetMesh, tags: &[u64]) -> Result<(), MeshError> {
     check_faces(mesh)?;
     let boundary = mesh.boundary_triangles();
@@ -39,9 +42,9 @@ fn overlap(at_mm: DVec3) -> MeshError {
     MeshError::Overlap { at_mm }
 }
 
-/// Each face belongs to one tetrahedron, or to two on either side of it.
+/// Checks that each face belongs to one tetrahedron, or to two on opposite sides.
 fn check_faces(mesh: &TetMesh) -> Result<(), MeshError> {
-    // The tetrahedra that have each face so far, on its one and on its other side.
+    // For each face: whether it has a tetrahedron on its one and on its other side so far.
     let mut faces: BTreeMap<[u32; 3], [bool; 2]> = BTreeMap::new();
     for (tet, nodes) in mesh.tets.iter().enumerate() {
         for face in FACES {
@@ -58,7 +61,7 @@ fn check_faces(mesh: &TetMesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// No two nodes of the boundary are at the same place.
+/// Checks that no two nodes of the boundary are at the same position.
 fn check_nodes(mesh: &TetMesh, boundary: &[[u32; 3]], tags: &[u64]) -> Result<(), MeshError> {
     let mut nodes: Vec<u32> = boundary.iter().flatten().copied().collect();
     nodes.sort_unstable();

@@ -1,15 +1,16 @@
-//! Writing a `.msh` file.
+//! Writes a `.msh` file.
 
 use std::fmt::Write;
 
 use super::{BONDED, elements::TET_4};
 use crate::TetMesh;
 
-/// The mesh as a Gmsh 4.1 text file, its bonded nodes as node data, so that [`super::read`] gives the same mesh back, bit for bit.
+/// The mesh as a Gmsh 4.1 text file, with its bonded nodes as node data. [`super::read`] gives the
+/// same mesh back, bit for bit.
 #[must_use]
 pub fn write(mesh: &TetMesh) -> String {
     let mut text = String::with_capacity(64 * (mesh.nodes_mm.len() + mesh.tets.len()));
-    // Writing to a string can't fail.
+    // Writing to a string cannot fail.
     let _ = write_to(&mut text, mesh);
     text
 }

@@ -1,4 +1,4 @@
-//! Whether an indenter has room to move.
+//! Checks that an indenter has room to move.
 
 use glam::DVec3;
 use twintac_shape::{Pose, SignedDistance};
@@ -12,11 +12,12 @@ use crate::{Blocker, SolveError};
 /// Distance from the body at which the first motion of an indenter starts, mm.
 const CLEARANCE_MM: f64 = 0.01;
 
-/// Most steps for moving an indenter out of the body.
+/// Largest number of steps to move an indenter out of the body.
 const MAX_RETREATS: u32 = 50;
 
 impl SoftBody {
-    /// Refuses a motion in which the indenter would enter something rigid: no gel is left there that could stop it.
+    /// Fails if the indenter would enter something rigid during the motion: there is no gel left
+    /// that could stop it.
     pub(super) fn check_way(
         &self,
         state: &State,
@@ -24,7 +25,7 @@ impl SoftBody {
         drive: &Drive,
     ) -> Result<(), SolveError> {
         let n_parts = (1.0 / drive.largest_part(self.settings.max_travel_mm)).round() as u32;
-        // For the first pose the motion is invented, so only its end is checked.
+        // The motion to the first pose is fictitious, so only its end is checked.
         let first = state.gel_from_indenter.map_or(n_parts, |_| 1);
         (first..=n_parts).try_for_each(|part| {
             let moving = RigidBody {
@@ -64,7 +65,8 @@ impl SoftBody {
         Ok(())
     }
 
-    /// A start for the first pose of an indenter: straight out of the body, along the mean of the outward normals where the indenter is inside.
+    /// A start for the motion to an indenter's first pose: straight out of the body, along the mean
+    /// of the outward normals where the indenter is inside.
     pub(super) fn retreat(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Pose {
         let mesh = self.mesh();
         let mut normals = vec![DVec3::ZERO; mesh.nodes_mm.len()];
@@ -91,7 +93,8 @@ impl SoftBody {
             if deepest_mm == 0.0 {
                 break;
             }
-            // The first direction is kept: as the indenter leaves, ever fewer nodes are inside it.
+            // The first direction is kept: as the indenter leaves, fewer and fewer nodes are inside
+            // of it.
             if way_out == DVec3::ZERO {
                 way_out = normal.normalize_or(DVec3::Z);
             }

@@ -1,11 +1,11 @@
-//! What drives a step: an indenter that moves, or bonded nodes that do.
+//! What moves in a step: an indenter, or the bonded nodes.
 
 use glam::DVec3;
 use twintac_shape::{Pose, SignedDistance};
 
 use crate::body::SoftBody;
 
-/// Part of its smallest dimension by which an indenter may move at once.
+/// Fraction of its smallest dimension by which an indenter may move in one step.
 const THICKNESS_PART: f64 = 0.25;
 
 /// A motion of the indenter, or of the bonded nodes.
@@ -33,7 +33,8 @@ impl Drive<'_> {
         }
     }
 
-    /// Largest part of the motion for one step: a node inside the moved shape must still be nearest to the side through which it entered.
+    /// Largest fraction of the motion for one step: a node inside of the moved shape must still be
+    /// nearest to the side through which it entered.
     pub(super) fn largest_part(&self, max_travel_mm: f64) -> f64 {
         let Self::Indenter { shape, from, to } = self else {
             return 1.0;
@@ -67,7 +68,7 @@ impl Drive<'_> {
     }
 }
 
-/// No shape at all.
+/// A shape that is nowhere.
 struct Nothing;
 
 impl SignedDistance for Nothing {

@@ -1,4 +1,4 @@
-//! Taking a press from one pose of the indenter to the next.
+//! Moves a press from one pose of the indenter to the next.
 
 mod clearance;
 mod drive;

@@ -14,8 +14,9 @@ use crate::parallel::on_two_threads;
 use crate::state::State;
 
 impl SoftBody {
-    /// Moves the indenter to a pose within a time, and finds the new equilibrium. A motion too large for one step is halved as
-    /// often as the settings allow. On an error the state stays as it was.
+    /// Moves the indenter to a pose within a time, and finds the new equilibrium. A motion that is
+    /// too large for one step is halved as often as the settings allow. After an error the state is
+    /// as it was before.
     pub fn advance(
         &self,
         state: &mut State,
@@ -36,7 +37,8 @@ impl SoftBody {
         self.drive(state, &drive, time_step_s)
     }
 
-    /// Moves the bonded nodes, with no indenter: `displacements_mm` is in the order of the mesh's set of bonded nodes.
+    /// Moves the bonded nodes, without an indenter. `displacements_mm` has the order of the mesh's
+    /// set of bonded nodes.
     pub fn advance_prescribed(
         &self,
         state: &mut State,
@@ -84,13 +86,13 @@ impl SoftBody {
         }
         let ends_at = state.deadline.map(|deadline| started + deadline);
         state.workspace.buffers(self).ends_at = ends_at.filter(|_| state.sensitivities.is_empty());
-        // Only a step in several parts can fail after one of them.
+        // Only a step in several parts can fail after one of them succeeded.
         let mut before = None;
         let (mut iterations, mut is_settled) = (0, true);
         let largest = drive.largest_part(self.settings.max_travel_mm);
         let (mut done, mut size) = (0.0, largest);
         loop {
-            // The last part ends at 1 exactly.
+            // The last part ends exactly at 1.
             let next = if done + size > 1.0 - 1e-9 {
                 1.0
             } else {

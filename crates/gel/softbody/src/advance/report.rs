@@ -1,4 +1,4 @@
-//! The frame of a step.
+//! Makes the frame of a step.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use crate::newton::Equilibrium;
 use crate::state::State;
 
 impl SoftBody {
-    /// Forces and torques at an equilibrium, and what it took to find it.
+    /// Forces and torques at an equilibrium, and the effort to find it.
     pub(super) fn frame(
         &self,
         state: &mut State,
@@ -37,7 +37,8 @@ impl SoftBody {
                 }
             }
         }
-        // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
+        // The force that is unbalanced at a node in contact is the error of the contact: the forces
+        // of the gel are more accurate.
         let parts = state.contacts[..n_parts].iter();
         let pressed: BTreeSet<u32> = parts
             .flat_map(|contact| contact.pressed_nodes(&self.boundary, self.pattern.halves.free))

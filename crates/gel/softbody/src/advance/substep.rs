@@ -11,11 +11,12 @@ use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::sensitivity;
 use crate::state::State;
 
-/// So often the points at which contact is evaluated are chosen anew within a step, at most.
+/// Largest number of times that contact points are chosen again within a step.
 const MOST_LOOKS: u32 = 3;
 
 impl SoftBody {
-    /// Solves for a part of a motion, from one fraction of it to another; on failure the state is as before.
+    /// Solves a part of a motion, between two fractions of it. After a failure the state is as it
+    /// was before.
     pub(super) fn substep(
         &self,
         state: &mut State,
@@ -63,13 +64,14 @@ impl SoftBody {
         buffers.passed.clear();
         let mut solved = buffers.solve(self, &step, &mut x, iterations);
         if is_ahead && *iterations == iterations_before && matches!(solved, Err(Failure::Inverted)) {
-            // Where the last motion would lead, a tetrahedron is inside out.
+            // At the extrapolated displacements a tetrahedron is inverted.
             x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
             drive.hold(self, part[1], x.displacements_mm);
             solved = buffers.solve(self, &step, &mut x, iterations);
         }
-        // At the rims of a shape that went far lie other triangles by now than where the step began. Without another look, its force would go on to change
-        // while it is held.
+        // After a long motion, other triangles are at the rims of the shape than at the start of
+        // the step. If the points were not chosen again, the force would continue to change while
+        // the shape is held.
         for _ in 0..MOST_LOOKS {
             if !solved.is_ok_and(|equilibrium| equilibrium.is_settled) || !self.look_again(&shapes, &mut x) {
                 break;
@@ -111,7 +113,7 @@ impl SoftBody {
         solved
     }
 
-    /// The parts of the indenter at a pose, then the obstacles.
+    /// The parts of the indenter at a pose, followed by the obstacles.
     fn shapes<'a>(&'a self, drive: &'a Drive, gel_from_indenter: Pose) -> Vec<RigidBody<'a>> {
         let mut shapes = RigidBody::parts(drive.shape(), gel_from_indenter);
         shapes.extend(self.obstacles.iter().map(|(shape, pose)| RigidBody {
@@ -121,7 +123,8 @@ impl SoftBody {
         shapes
     }
 
-    /// Prepares the contacts for a step in which shapes come from where they were, and keeps the unknowns as they were.
+    /// Prepares the contacts for a step that starts with the shapes `before`, and saves the
+    /// unknowns.
     fn begin(&self, state: &mut State, [before, shapes]: [&[RigidBody]; 2]) {
         let n_parts = state.n_indenter_parts(self);
         let State {
@@ -135,7 +138,7 @@ impl SoftBody {
         contacts[..n_parts].iter_mut().for_each(Contact::forget_distances);
         let at_mm = |node: u32| self.mesh().nodes_mm[node as usize] + displacements_mm[node as usize];
         for (index, (shape, contact)) in shapes.iter().zip(contacts.iter_mut()).enumerate() {
-            // The indenter moves.
+            // Only obstacles are checked for distance, because the indenter moves.
             if index >= n_parts {
                 contact.look_for_room(shape, &self.boundary, &at_mm);
             }
@@ -145,7 +148,8 @@ impl SoftBody {
         old.displacements_mm.clone_from(displacements_mm);
         old.pressures_mpa.clone_from(pressures_mpa);
         old.contacts.clone_from(contacts);
-        // What was late is still on its way: how deep its nodes are says nothing yet.
+        // A step that ended at its deadline is not at equilibrium, so the depths of its nodes are
+        // not forces yet.
         if !*was_late {
             contacts.iter_mut().for_each(Contact::update_multipliers);
         }
@@ -156,7 +160,7 @@ impl SoftBody {
         }
     }
 
-    /// Chooses the points at which contact is evaluated anew; whether there are others now.
+    /// Chooses the points at which contact is evaluated again; returns whether they have changed.
     fn look_again(&self, shapes: &[RigidBody], x: &mut Unknowns) -> bool {
         let displacements_mm: &[DVec3] = x.displacements_mm;
         let at_mm = |node: u32| self.mesh.nodes_mm[node as usize] + displacements_mm[node as usize];
@@ -166,7 +170,7 @@ impl SoftBody {
         })
     }
 
-    /// Refuses a solution in which the indenter and the body have passed through each other.
+    /// Fails if the indenter and the body have passed through each other.
     fn check_sides(
         &self,
         [before, now]: [&[RigidBody]; 2],

@@ -1,4 +1,5 @@
-//! Contact with a shape that is too far away to touch: it has room, and costs nothing until that is gone.
+//! Contact with a shape that is too far away to touch: nothing of it is computed until the boundary
+//! has moved as far as the shape is away.
 
 use glam::DVec3;
 
@@ -7,11 +8,12 @@ use super::rigid_body::RigidBody;
 use super::room::Room;
 use super::state::Contact;
 
-/// Steps after which room is looked for again where there was none.
+/// Number of steps after which the distance is measured again, if it was too small.
 const STEPS: u32 = 8;
 
 impl Contact {
-    /// Looks again for room up to a shape that does not move, where it may be gone or have come.
+    /// Measures again the distance to a shape that does not move, if the boundary has moved as far
+    /// as the last distance, or if that was too small.
     pub(crate) fn look_for_room(
         &mut self,
         shape: &RigidBody,
@@ -40,7 +42,8 @@ impl Contact {
         self.room = room;
     }
 
-    /// Goes on as if there had been no room where the boundary's nodes have moved through it within a step, which began at `before_mm`.
+    /// If the boundary's nodes have moved too far within a step, which began at `before_mm`,
+    /// continues as if the shape had been near from the start of the step.
     pub(crate) fn check_room(
         &mut self,
         shape: &RigidBody,

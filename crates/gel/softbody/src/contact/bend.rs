@@ -1,15 +1,17 @@
-//! How far a shape bends between two points of the boundary.
+//! How much a shape bends between two points of the boundary.
 
 use glam::DVec3;
 
 use super::rigid_body::RigidBody;
 
-/// Parts of the way between which normals are compared.
+/// Number of parts of the path between which normals are compared.
 const N_PARTS: u32 = 8;
 
 impl RigidBody<'_> {
-    /// The turn between two normals, as the distance of unit vectors, times the length of the arc on which the shape turns so far, mm: the whole way if it
-    /// turns evenly, less if it turns at a rim alone. Less than a part of the way cannot be told.
+    /// The turn between two normals (the distance of the unit vectors) times the length of the arc
+    /// over which the shape turns by as much, mm. This length is that of the whole path if the
+    /// shape turns evenly, and shorter if it turns at a rim alone; it is at least one part of the
+    /// path.
     pub(super) fn bend_mm(&self, at_mm: [DVec3; 2], normals: [DVec3; 2]) -> f64 {
         let turn = normals[0].distance(normals[1]);
         let part = 1.0 / f64::from(N_PARTS);
@@ -24,7 +26,7 @@ impl RigidBody<'_> {
             sharpest = f64::max(sharpest, normal.distance(before));
             before = normal;
         }
-        // Over a part of the way, the shape turns by `sharpest`.
+        // Over one part of the path, the shape turns by `sharpest`.
         let share = if turn > 0.0 { turn * part / sharpest } else { 0.0 };
         turn * at_mm[0].distance(at_mm[1]) * share.min(1.0)
     }
@@ -38,7 +40,7 @@ mod tests {
 
     use super::*;
 
-    /// The bend between two points, beside which a shape has these normals.
+    /// The bend between two points, with the normals of the shape nearest to them.
     fn bend_mm(shape: &Shape, at_mm: [DVec3; 2]) -> f64 {
         let field = shape.signed_distance_field(&Surfaces::default()).unwrap();
         let body = RigidBody {
@@ -52,7 +54,7 @@ mod tests {
     fn a_ball_bends_all_the_way_and_a_box_at_its_rim() {
         let ball = Shape::Sphere { radius_mm: 5.0 };
         let [a, b] = [DVec3::new(0.0, 0.0, 0.0), DVec3::new(3.0, 0.0, 1.0)];
-        // Normals of the ball turn by the chord over the radius.
+        // Normals of the ball turn by the chord divided by the radius.
         let chord_mm = a.distance(b);
         let found = bend_mm(&ball, [a, b]);
         let expected = chord_mm * chord_mm / 5.0;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::point::ContactPoint;
 use super::triangle::BoundaryTriangle;
 
-/// The boundary of a body: what can touch.
+/// The boundary of a body: the part that can come into contact.
 pub(crate) struct Boundary {
     /// Its free nodes.
     pub(crate) nodes: Vec<ContactPoint>,
@@ -29,7 +29,7 @@ impl Boundary {
         }
     }
 
-    /// Where its nodes are, mm, by where all nodes are.
+    /// Positions of its nodes, mm, given those of all nodes.
     pub(super) fn nodes_mm(&self, node_mm: &dyn Fn(u32) -> DVec3) -> impl Iterator<Item = DVec3> {
         self.nodes.iter().map(move |point| node_mm(point.corners()[0]))
     }

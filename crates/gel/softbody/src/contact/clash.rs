@@ -1,16 +1,18 @@
-//! Whether two rigid shapes overlap.
+//! Checks whether two rigid shapes overlap.
 
 use glam::DVec3;
 
 use super::rigid_body::RigidBody;
 
-/// Depth inside both shapes that is still taken for touching, mm.
+/// Depth inside of both shapes up to which they only touch, mm.
 const TOUCHING_MM: f64 = 0.02;
 
-/// A point at which two shapes overlap, and the depth there, mm; none where they are apart or only touch.
+/// A point at which two shapes overlap, and the depth there, mm; `None` if they are apart or only
+/// touch.
 ///
-/// Boxes are halved until their middle is inside both shapes, or nothing in them can be: a distance changes no faster than its point moves.
-/// A moving shape without bounds is not looked at.
+/// Boxes are halved until their middle is inside of both shapes, or until no point in them can be:
+/// a signed distance changes by at most the distance that its point moves. A moving shape without
+/// bounds is not checked.
 pub(crate) fn clash(moving: &RigidBody, still: &RigidBody) -> Option<(DVec3, f64)> {
     let (low, high) = moving.shape.bounds_mm();
     let mut boxes = vec![(0.5 * (low + high), 0.5 * (high - low))];
@@ -47,7 +49,7 @@ mod tests {
     fn a_ball_over_a_wall_is_stopped_where_it_meets_the_rim() {
         let field = |shape: Shape| shape.signed_distance_field(&Surfaces::default()).unwrap();
         let ball = field(Shape::Sphere { radius_mm: 5.0 });
-        // A wall from x = 8 on, up to z = 6, its rim rounded by 0.5 mm.
+        // A wall from x = 8, up to z = 6, with its rim rounded by 0.5 mm.
         let wall = field(Shape::Box {
             size_mm: [10.0, 40.0, 6.0],
             edge_radius_mm: 0.5,
@@ -57,7 +59,7 @@ mod tests {
                 shape: ball.as_ref(),
                 gel_from_shape: Pose::from_position(DVec3::new(x_mm, 0.0, z_mm)),
             };
-            // The wall's lower side has the rim, upside down.
+            // The wall upside down: the rim is at its lower side.
             let still = RigidBody {
                 shape: wall.as_ref(),
                 gel_from_shape: Pose {
@@ -67,7 +69,8 @@ mod tests {
             };
             clash(&moving, &still).map(|(_, depth_mm)| depth_mm)
         };
-        // Its centre 5.5 mm off the rim's: at a height above that of the rim's centre, 5.5, of sqrt(5.5² - 4.5²).
+        // Its centre is 5.5 mm from that of the rim, at a height of sqrt(5.5² - 4.5²) above that of
+        // the rim's centre, 5.5.
         let touch_mm = 5.5 + (5.5_f64 * 5.5 - 4.5 * 4.5).sqrt() - 5.0;
         assert_eq!(overlap_at(4.0, touch_mm + 0.01), None);
         let found_mm = overlap_at(4.0, touch_mm - 0.2).unwrap();

@@ -1,11 +1,16 @@
 //! Coulomb friction of a boundary's nodes on a rigid shape.
 //!
-//! A node in touch is connected to a point of the shape, its anchor, by a spring along the surface. The force of the spring is at most the
-//! coefficient times the normal force, `μ f`: it grows from stiffness `k` to that limit over a slip of `2 μ f / k`, and drags the anchor along beyond
-//! that (Simo and Laursen, Comput. Struct. 42, 1992). It is `μ f (2t - t²)`, `t` the part of that slip: with a kink at the limit instead, Newton's method goes
-//! to and fro between nodes that hold and nodes that slip. With the normal forces of the last iterate ("lagged") the spring has an energy and a
-//! symmetric tangent, and never gives back more energy than it took; both are of Li et al. (Incremental Potential Contact, ACM Trans. Graph. 39, 2020).
-//! The anchor of a spring that holds does not move, so a held press does not creep.
+//! A node in contact is connected to a point of the shape, its anchor, by a spring along the
+//! surface. The force of the spring is at most the coefficient times the normal force, `μ f`. It
+//! grows from the stiffness `k` to that limit over a slip of `2 μ f / k`, and drags the anchor
+//! along beyond that (Simo and Laursen, Comput. Struct. 42, 1992). It is `μ f (2t - t²)`, where `t`
+//! is the fraction of that slip. With a kink at the limit, Newton's method would alternate between
+//! nodes that stick and nodes that slip.
+//!
+//! With the normal forces of the last iterate ("lagged"), the spring has an energy and a symmetric
+//! tangent, and never returns more energy than it took; both ideas are of Li et al. (Incremental
+//! Potential Contact, ACM Trans. Graph. 39, 2020). The anchor of a spring that sticks does not
+//! move, so a held press does not creep.
 
 use glam::{DMat3, DVec3};
 
@@ -13,7 +18,7 @@ use super::point::ContactPoint;
 use super::rigid_body::{RigidBody, outer};
 use super::touch::Touch;
 
-/// A node no farther from the shape than this counts as standing on it, mm.
+/// A node within this distance of the shape is in contact with it, mm.
 const STANDING_MM: f64 = 0.001;
 
 /// Friction of a boundary's nodes on one shape.
@@ -24,13 +29,15 @@ pub(crate) struct Friction {
     grips: Vec<Grip>,
 }
 
-/// How one node is held.
+/// The friction of one node.
 #[derive(Clone, Copy, Debug, Default)]
 struct Grip {
-    /// The anchor of the node, in the shape's frame. None where the node was off the shape when the step began: it lands without friction, as it is
-    /// not known for which part of the step it is in touch.
+    /// The anchor of the node, in the shape's frame. `None` if the node was off the shape when the
+    /// step began: its first contact is without friction, because it is unknown for which part of
+    /// the step it is in contact.
     anchor_mm: Option<DVec3>,
-    /// Outward normal of the shape, and the largest force of the spring, N: both of the last iterate.
+    /// Outward normal of the shape; and below, the largest force of the spring, N. Both are those
+    /// of the last iterate.
     normal: DVec3,
     most_n: f64,
     /// Force on the node, N.
@@ -38,7 +45,7 @@ struct Grip {
 }
 
 impl Friction {
-    /// Nothing held yet.
+    /// Friction without any anchor.
     pub(crate) fn new(coefficient: f64, n_boundary_nodes: usize) -> Self {
         Self {
             coefficient,
@@ -46,7 +53,8 @@ impl Friction {
         }
     }
 
-    /// Begins a step: nodes that stand on the shape, where it is before the step, are held from now on.
+    /// Begins a step: nodes that are in contact with the shape, at its pose before the step, get an
+    /// anchor.
     pub(crate) fn begin<'a>(
         &mut self,
         shape: &RigidBody,
@@ -62,14 +70,14 @@ impl Friction {
         }
     }
 
-    /// Whether no node is held.
+    /// Whether no node has an anchor.
     pub(crate) fn holds_nothing(&self) -> bool {
         self.grips
             .iter()
             .all(|grip| grip.anchor_mm.is_none() && grip.most_n <= 0.0)
     }
 
-    /// Takes over normals and normal forces; returns by how much the springs' limits change altogether, N.
+    /// Updates normals and normal forces; returns the sum of the changes of the springs' limits, N.
     pub(crate) fn follow(&mut self, touches: &[Touch]) -> f64 {
         let mut change_n = 0.0;
         for (grip, touch) in self.grips.iter_mut().zip(touches) {
@@ -82,7 +90,8 @@ impl Friction {
         change_n
     }
 
-    /// Updates the force on each node that is held, and hands it out; returns the energy, N mm.
+    /// Updates the force on each node with an anchor and passes it to `add`; returns the energy, N
+    /// mm.
     pub(crate) fn pull<'a>(
         &mut self,
         shape: &RigidBody,
@@ -111,7 +120,7 @@ impl Friction {
         energy
     }
 
-    /// Second derivative of the energy at a boundary node, N/mm; none where the node is not held.
+    /// Second derivative of the energy at a boundary node, N/mm; `None` if the node has no anchor.
     pub(crate) fn stiffness(
         &self,
         index: usize,
@@ -132,7 +141,8 @@ impl Friction {
         })
     }
 
-    /// Ends a step: what slipped has dragged its anchor along, and what has left the shape is free.
+    /// Ends a step: nodes that slipped have dragged their anchors along, and nodes that left the
+    /// shape lose theirs.
     pub(crate) fn settle<'a>(
         &mut self,
         shape: &RigidBody,
@@ -160,13 +170,14 @@ impl Friction {
 }
 
 impl Grip {
-    /// How far the node is from its anchor along the surface, mm; none where it has no anchor.
+    /// Distance of the node from its anchor along the surface, mm; `None` without an anchor.
     fn slip_mm(&self, shape: &RigidBody, at_mm: DVec3) -> Option<DVec3> {
         let anchor_mm = shape.gel_from_shape.transform_point(self.anchor_mm?);
         Some((at_mm - anchor_mm).reject_from_normalized(self.normal))
     }
 
-    /// Slip at which the spring's force reaches its limit, mm; `stiffness` is that without slip, N/mm.
+    /// Slip at which the spring's force reaches its limit, mm; `stiffness` is that without slip,
+    /// N/mm.
     fn elastic_mm(&self, stiffness: f64) -> f64 {
         2.0 * self.most_n / stiffness
     }
@@ -181,7 +192,7 @@ mod tests {
 
     const STIFFNESS: f64 = 50.0;
 
-    /// One node that a ball at rest holds at the origin with at most 0.2 N.
+    /// One node that a resting ball holds at the origin with at most 0.2 N.
     fn held() -> Friction {
         let grip = Grip {
             anchor_mm: Some(DVec3::ZERO),

@@ -1,7 +1,10 @@
-//! Whether gel and shape have passed through each other: what a solution must not have, whatever its residual says.
+//! Checks whether gel and shape have passed through each other, which no solution may have, however
+//! small its residual is.
 //!
-//! A point of the boundary knows of a shape the nearest face alone. A wall that is thinner than a step goes past a node from one side to the other, and one that is
-//! thinner than a triangle goes through between its corners; either way the forces balance. So it is looked at afterwards.
+//! A point of the boundary only knows the nearest face of a shape. A wall that is thinner than a
+//! step goes past a node from one side to the other. One that is thinner than a triangle goes
+//! through between its corners. In both cases the forces balance, so it has to be checked
+//! afterwards.
 
 use glam::DVec3;
 
@@ -9,22 +12,24 @@ use super::boundary::Boundary;
 use super::rigid_body::RigidBody;
 use super::state::Contact;
 
-/// A shape is a wall where it is thinner than this part of the longest edge of the triangle that it goes through.
+/// A shape is a wall where it is thinner than this fraction of the longest edge of the triangle
+/// that it goes through.
 const WALL: f64 = 0.5;
 
-/// How far a wall may reach through a triangle, as part of its thickness.
+/// Largest reach of a wall through a triangle, as a fraction of its thickness.
 const MOST_OF_THICKNESS: f64 = 0.6;
 
-/// Cosine of the angle between the outward normals at both ends of a way below which these are on opposite sides of a shape.
+/// If the cosine of the angle between the outward normals at both ends of a path is below this, the
+/// ends are on opposite sides of a shape.
 const OPPOSITE: f64 = -0.5;
 
-/// A point that is less deep than this is on the surface, mm.
+/// A point with a smaller depth than this is on the surface, mm.
 const ON_SURFACE_MM: f64 = 1e-3;
 
-/// Steps of a way through a shape, or up to it, at most.
+/// Largest number of steps of a path through a shape, or up to it.
 const MOST_STEPS: u32 = 64;
 
-/// A place at which gel and shape have passed through each other.
+/// A point at which gel and shape have passed through each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PassedThrough {
     pub(crate) at_mm: DVec3,
@@ -37,7 +42,7 @@ pub(crate) struct PassedThrough {
 }
 
 impl Contact {
-    /// A triangle through which a wall of the shape goes, if there is one.
+    /// A triangle through which a wall of the shape goes; `None` if there is no such triangle.
     pub(crate) fn pierced(&self, shape: &RigidBody, node_mm: &dyn Fn(u32) -> DVec3) -> Option<PassedThrough> {
         self.points_inside().find_map(|(point, edge_mm, touch)| {
             if touch.force_n <= 0.0 || touch.measured_mm > -ON_SURFACE_MM {
@@ -51,7 +56,8 @@ impl Contact {
             let thickness_mm = across_mm[0] + across_mm[1];
             let sides =
                 [at_mm + aside * across_mm[0], at_mm - aside * across_mm[1]].map(|side| shape.normal(side));
-            // Of what is thicker, nodes feel the one side and the other; at a corner there is no other side.
+            // On a thicker shape, nodes are in contact with one side and with the other. At a
+            // corner there is no other side.
             if thickness_mm > WALL * edge_mm || sides[0].dot(sides[1]) > OPPOSITE {
                 return None;
             }
@@ -65,7 +71,8 @@ impl Contact {
         })
     }
 
-    /// A node that has come to the other side of the shape in a step, if there is one. `before_mm` are the nodes, and `before` is the shape, as they were.
+    /// A node that has come to the other side of the shape during a step; `None` if there is no
+    /// such node. `before_mm` gives the nodes, and `before` the shape, at the start of the step.
     pub(crate) fn changed_sides(
         &self,
         [before, now]: [&RigidBody; 2],
@@ -93,7 +100,8 @@ impl Contact {
 }
 
 impl RigidBody<'_> {
-    /// Length of the way from a point inside the shape along a unit vector until it is left, mm; 0 from outside.
+    /// Length of the path along a unit vector from a point inside of the shape to its surface, mm;
+    /// 0 from outside.
     fn way_out_mm(&self, from_mm: DVec3, along: DVec3) -> f64 {
         let from_mm = self.gel_from_shape.inverse_transform_point(from_mm);
         let along = self.gel_from_shape.rotation.inverse() * along;
@@ -108,7 +116,8 @@ impl RigidBody<'_> {
         way_mm
     }
 
-    /// How thick the shape is between two points in its frame that are on opposite sides of it, mm; none if they are not.
+    /// Thickness of the shape between two points in its frame on opposite sides of it, mm; `None`
+    /// if they are not on opposite sides.
     fn between_mm(&self, from_mm: DVec3, to_mm: DVec3) -> Option<f64> {
         let [from, to] = [from_mm, to_mm].map(|at_mm| self.shape.signed_distance(at_mm));
         let way_mm = from_mm.distance(to_mm);
@@ -127,7 +136,8 @@ impl RigidBody<'_> {
         (entered.dot(left) < OPPOSITE && thickness_mm > ON_SURFACE_MM).then_some(thickness_mm)
     }
 
-    /// Length of the way from a point along a unit vector up to the shape, mm; none if the shape is not met within so far.
+    /// Length of the path along a unit vector from a point to the shape, mm; `None` if it is more
+    /// than `most_mm`.
     fn way_up_to_mm(&self, from_mm: DVec3, along: DVec3, most_mm: f64) -> Option<f64> {
         let mut way_mm = 0.0;
         for _ in 0..MOST_STEPS {

@@ -5,13 +5,13 @@ use glam::DVec3;
 /// A contact point: a node of the boundary, or a quadrature point inside a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactPoint {
-    /// The triangle's corners; of a node, itself.
+    /// Corners of the triangle; for a node, the node itself.
     nodes: [u32; 3],
-    /// Weights of the corners; of a node 1, 0 and 0.
+    /// Weights of the corners; for a node 1, 0 and 0.
     weights: [f64; 3],
-    /// Contact stiffness κ, N/mm: a stiffness per area times the boundary area that belongs to the point.
+    /// Contact stiffness κ, N/mm: a stiffness per area times the boundary area of the point.
     pub(crate) stiffness: f64,
-    /// Depth inside a shape that causes no force, mm.
+    /// Depth inside of a shape that causes no force, mm.
     pub(crate) slack_mm: f64,
 }
 
@@ -41,12 +41,12 @@ impl ContactPoint {
         self.weights[0] == 1.0
     }
 
-    /// The triangle's corners; of a node, itself three times.
+    /// Corners of the triangle; for a node, three times the node itself.
     pub(super) fn corners(&self) -> [u32; 3] {
         self.nodes
     }
 
-    /// Value of a nodal field.
+    /// Value of a nodal field at the point.
     #[inline]
     pub(crate) fn value(&self, field: &[DVec3]) -> DVec3 {
         let [a, b, c] = self.nodes.map(|node| node as usize);
@@ -57,7 +57,7 @@ impl ContactPoint {
         }
     }
 
-    /// The nodes on which the point depends, and their weights.
+    /// The nodes that the point depends on, and their weights.
     #[inline]
     pub(crate) fn parts(&self) -> impl Iterator<Item = (u32, f64)> + Clone + use<> {
         let n_parts = if self.is_node() { 1 } else { 3 };

@@ -9,11 +9,12 @@ pub(crate) struct RigidBody<'a> {
     pub(crate) gel_from_shape: Pose,
 }
 
-/// Parts that are treated each by itself, at most: every one costs about as much as the first.
+/// Largest number of parts that are treated separately: each of them costs about as much as the
+/// first.
 const MOST_PARTS: usize = 8;
 
 impl<'a> RigidBody<'a> {
-    /// The parts of a shape at a pose; the shape itself if it has none, or too many.
+    /// The parts of a shape at a pose; the shape itself if it has no parts, or too many.
     pub(crate) fn parts(shape: &'a dyn SignedDistance, gel_from_shape: Pose) -> Vec<Self> {
         let parts = shape.parts();
         if parts.is_empty() || parts.len() > MOST_PARTS {

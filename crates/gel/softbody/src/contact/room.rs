@@ -1,4 +1,5 @@
-//! Room between the boundary and a shape that stays where it is: until the boundary has moved as far, nothing can touch, and nothing needs to be computed.
+//! The distance ("room") between the boundary and a shape that does not move. Until the boundary
+//! has moved as far, nothing can touch, and nothing needs to be computed.
 
 use std::sync::Arc;
 
@@ -8,25 +9,26 @@ use super::boundary::Boundary;
 use super::rigid_body::RigidBody;
 use super::triangle::middles;
 
-/// Room below which there is none, mm: it would soon be gone.
+/// Smallest distance that is used, mm: a smaller one would soon be gone.
 const LEAST_MM: f64 = 0.1;
 
-/// Distance that is no room, mm: what is nearer may count as touching.
+/// Part of the distance that is kept as a reserve, mm: points that are nearer may count as
+/// touching.
 const TOUCHING_MM: f64 = 0.01;
 
-/// The farthest that a point of a triangle can be from the nearest corner, over the longest edge.
+/// Largest distance of a point of a triangle from the nearest corner, divided by the longest edge.
 const FARTHEST: f64 = 0.58;
 
-/// Room between the whole boundary and a shape.
+/// Distance between the whole boundary and a shape.
 #[derive(Clone, Debug)]
 pub(super) struct Room {
     mm: f64,
-    /// The boundary's nodes where it was measured, mm.
+    /// Positions of the boundary's nodes when it was measured, mm.
     measured_at_mm: Arc<Vec<DVec3>>,
 }
 
 impl Room {
-    /// Measures it; none where it is next to nothing.
+    /// Measures the distance; `None` if it is too small.
     pub(super) fn measure(
         shape: &RigidBody,
         boundary: &Boundary,
@@ -39,22 +41,22 @@ impl Room {
         })
     }
 
-    /// Whether it was measured at the same time.
+    /// Whether both were measured at the same time.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.measured_at_mm, &other.measured_at_mm)
     }
 
-    /// Whether the boundary's nodes have moved through it.
+    /// Whether the boundary's nodes have moved as far.
     pub(super) fn is_gone(&self, boundary: &Boundary, node_mm: &dyn Fn(u32) -> DVec3) -> bool {
         let most_mm = self.mm - TOUCHING_MM;
         let mut places_mm = boundary.nodes_mm(node_mm).zip(&*self.measured_at_mm);
-        // A place that is not a number has no room.
+        // A position that is NaN counts as having moved too far.
         !places_mm.all(|(now_mm, then_mm)| now_mm.distance_squared(*then_mm) < most_mm * most_mm)
     }
 }
 
-/// Distance between a shape and the boundary, mm, at its nodes and wherever within its triangles contact is evaluated; or a lower bound, or less than
-/// [`LEAST_MM`].
+/// Distance between a shape and the boundary, mm, at the nodes of the boundary and at the points of
+/// its triangles where contact is evaluated; or a lower bound, or a value below [`LEAST_MM`].
 fn room_mm(shape: &RigidBody, boundary: &Boundary, node_mm: &dyn Fn(u32) -> DVec3) -> f64 {
     let distance_mm = |at_mm: DVec3| {
         let local_mm = shape.gel_from_shape.inverse_transform_point(at_mm);
@@ -98,7 +100,7 @@ mod tests {
     use super::super::triangle::BoundaryTriangle;
     use super::*;
 
-    /// Nodes along each side of a sheet, and the distance between them, mm.
+    /// Number of nodes along each side of a sheet, and the distance between them, mm.
     const N: u32 = 7;
     const EDGE_MM: f64 = 2.0;
 
@@ -149,7 +151,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
-        /// What is skipped would have touched nothing: while there is room, no place at which contact is evaluated is inside the shape.
+        /// Where contact is skipped there is none: as long as there is room, no point at which
+        /// contact is evaluated is inside of the shape.
         #[test]
         fn where_there_is_room_nothing_touches(
             which in 0_usize..5,

@@ -12,32 +12,33 @@ use super::room::Room;
 use super::touch::Touch;
 use super::triangle::{BoundaryTriangle, SIDES};
 
-/// How much stiffer a contact is made that an update of its multiplier does not push out.
+/// Factor by which a contact is made stiffer if an update of its multiplier does not push it out.
 const STIFFENING: f64 = 4.0;
 
-/// An update has not pushed a node out if more than this part of the depth is left.
+/// An update has not pushed a node out if more than this fraction of the depth remains.
 const STUCK: f64 = 0.5;
 
 /// Difference of the normals at two corners, as unit vectors, above which a shape turns sharply.
 const SHARP: f64 = 0.5;
 
-/// The same above which the corners are on sides that face away from each other.
+/// Difference of the normals at two corners, as unit vectors, above which they are on sides that
+/// face away from each other.
 const TURNED_AWAY: f64 = 1.6;
 
 /// Contact of the boundary with one shape.
 #[derive(Debug)]
 pub(crate) struct Contact {
-    /// Of its nodes. `[n_boundary_nodes]`
+    /// Contact of its nodes; `[n_boundary_nodes]`.
     pub(crate) touches: Vec<Touch>,
-    /// Room up to the shape: while there is some, nothing of the contact is computed.
+    /// Distance to the shape. As long as there is one, nothing of the contact is computed.
     pub(super) room: Option<Room>,
-    /// Steps before room is looked for again.
+    /// Number of steps before the distance is measured again.
     pub(super) steps_until_look: u32,
-    /// The quadrature points inside its triangles that are in use.
+    /// The quadrature points inside of its triangles that are in use.
     inside: Vec<Inside>,
     /// Depth of the deepest node when nodes were last pushed out in this step, mm.
     pushed_mm: f64,
-    /// None for a coefficient of zero.
+    /// `None` if the coefficient is zero.
     pub(super) friction: Option<Friction>,
 }
 
@@ -45,7 +46,7 @@ pub(crate) struct Contact {
 #[derive(Clone, Debug)]
 struct Inside {
     point: ContactPoint,
-    /// Longest edge of its triangle at rest, mm.
+    /// Longest edge of its undeformed triangle, mm.
     edge_mm: f64,
     touch: Touch,
 }
@@ -62,9 +63,9 @@ impl Clone for Contact {
         }
     }
 
-    /// Reuses the memory: every step begins with this.
+    /// Reuses the memory, because every step begins with this copy.
     fn clone_from(&mut self, source: &Self) {
-        // Nothing of a contact changes while it has the same room.
+        // Nothing of a contact changes as long as its distance is valid.
         if let (Some(room), Some(other)) = (&self.room, &source.room)
             && room.is_same(other)
         {
@@ -92,7 +93,8 @@ impl Contact {
         }
     }
 
-    /// All points that the shape may touch, and their contact: first all nodes, or no points at all.
+    /// All points that the shape may touch, and their contact: all nodes first, or no points at
+    /// all.
     pub(crate) fn each<'a>(
         &'a self,
         boundary: &'a Boundary,
@@ -101,7 +103,7 @@ impl Contact {
         self.nodes(boundary).iter().zip(&self.touches).chain(inside)
     }
 
-    /// The same, to be changed.
+    /// The same, mutable.
     pub(crate) fn each_mut<'a>(
         &'a mut self,
         boundary: &'a Boundary,
@@ -122,7 +124,7 @@ impl Contact {
         self.friction.as_ref().filter(|_| self.room.is_none())
     }
 
-    /// The same, to be changed, and the nodes' contact.
+    /// The same, mutable, and the contact of the nodes.
     pub(crate) fn friction_mut(&mut self) -> Option<(&mut Friction, &[Touch])> {
         let friction = self.friction.as_mut().filter(|_| self.room.is_none())?;
         Some((friction, &self.touches))
@@ -141,7 +143,8 @@ impl Contact {
         })
     }
 
-    /// Free nodes that the shape presses, themselves or beside them, ascending.
+    /// Free nodes that the shape presses on, or that belong to a point that it presses on;
+    /// ascending.
     pub(crate) fn pressed_nodes(&self, boundary: &Boundary, n_free: usize) -> BTreeSet<u32> {
         let pressed = self.each(boundary).filter(|(_, touch)| touch.force_n > 0.0);
         let nodes = pressed.flat_map(|(point, _)| point.parts().map(|(node, _)| node));
@@ -159,8 +162,9 @@ impl Contact {
         self.pushed_mm = f64::INFINITY;
     }
 
-    /// Updates the multipliers within a step if nodes are deeper than allowed; true if there are any. Nodes that an update has not moved out are
-    /// made stiffer as well: neighbours on a convex edge would otherwise slip off it in turns, without end.
+    /// Updates the multipliers within a step if nodes are deeper than allowed; returns whether
+    /// there are any. Nodes that an update has not moved out are also made stiffer: otherwise
+    /// neighbours on a convex edge could slip off it in turns, without end.
     pub(crate) fn push_out(&mut self, allowed_mm: f64) -> bool {
         let deepest_mm = self.penetration_mm();
         if deepest_mm <= allowed_mm {
@@ -175,13 +179,14 @@ impl Contact {
         true
     }
 
-    /// The quadrature points inside triangles, the longest edge of each one's triangle at rest, mm, and their contact.
+    /// The quadrature points inside of triangles, the longest edge of each one's undeformed
+    /// triangle, mm, and their contact.
     pub(super) fn points_inside(&self) -> impl Iterator<Item = (&ContactPoint, f64, &Touch)> {
         let inside = self.inside.iter();
         inside.map(|inside| (&inside.point, inside.edge_mm, &inside.touch))
     }
 
-    /// Whether nothing is left of a touch, to be pushed or held.
+    /// Whether no contact is left that is pushed or held by friction.
     pub(super) fn is_untouched(&self) -> bool {
         let is_off = |touch: &Touch| touch.force_n <= 0.0 && touch.multiplier_mm <= 0.0;
         self.touches.iter().all(is_off) && self.friction.as_ref().is_none_or(Friction::holds_nothing)
@@ -203,12 +208,13 @@ impl Contact {
         touches.fold(0.0, |deepest, touch| f64::max(deepest, -touch.gap_mm))
     }
 
-    /// Forgets the distances: the shape may be another one now.
+    /// Invalidates the distances, because the shape may be another one now.
     pub(crate) fn forget_distances(&mut self) {
         self.touches.iter_mut().for_each(|touch| touch.measured_mm = 0.0);
     }
 
-    /// Chooses the quadrature points anew where the body is by now. True if they are in other triangles than before; else those of before stay.
+    /// Chooses the quadrature points again for the present deformation. Returns true if they are in
+    /// other triangles than before; otherwise the previous ones are kept.
     pub(crate) fn look_again(
         &mut self,
         shape: &RigidBody,
@@ -227,7 +233,8 @@ impl Contact {
         is_other
     }
 
-    /// Chooses the quadrature points of a step: inside the triangles where the shape's normal turns sharply.
+    /// Chooses the quadrature points of a step: inside of triangles where the normal of the shape
+    /// turns sharply.
     pub(crate) fn look_inside(
         &mut self,
         shape: &RigidBody,
@@ -256,7 +263,8 @@ impl Contact {
                 *normal.or_insert_with(|| shape.normal(node_mm(node)))
             })
         };
-        // Where the shape turns sharply within a triangle, and beside that: gel that slides around a rim takes its neighbours there within the step.
+        // Where the shape turns sharply within a triangle, and beside that, because gel that slides
+        // around a rim takes its neighbours there within the step.
         let mut is_at_rim = vec![false; boundary.nodes.len()];
         for triangle in &boundary.triangles {
             if triangle.free_corners().any(|corner| is_near[corner]) {

@@ -5,39 +5,44 @@ use glam::{DMat3, DVec3};
 use super::point::ContactPoint;
 use super::rigid_body::{RigidBody, outer};
 
-/// Depth over which the force of contact starts, mm. A sudden start would leave Newton's method going to and fro across it.
+/// Depth over which the contact force starts, mm. With a sudden start, Newton's method would
+/// alternate between both sides of it.
 const RAMP_MM: f64 = 0.001;
 
 /// Half the distance between the points at which the curvature of a shape is sampled, mm.
 const CURVATURE_STEP_MM: f64 = 1e-4;
 
-/// Depth beyond the multiplier up to which the curvature of a shape counts, mm: before equilibrium, deep nodes would make the energy concave.
+/// Depth beyond the multiplier up to which the curvature of a shape is used, mm: before
+/// equilibrium, deep nodes would make the energy concave.
 const CURVED_MM: f64 = 0.01;
 
-/// Most that curvature takes of a contact's stiffness.
+/// Largest fraction of a contact's stiffness that curvature may remove.
 const MOST_CURVED: f64 = 0.05;
 
 /// Contact of one point with one shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
-    /// Distance to the shape, mm; negative inside. Of a point that is certainly out of touch, a lower bound above zero.
+    /// Distance to the shape, mm; negative inside. For a point that is certainly out of contact, a
+    /// lower bound above zero.
     pub(crate) gap_mm: f64,
     /// Outward normal of the shape, in the gel's frame.
     pub(crate) normal: DVec3,
-    /// Normal force on the point, N, not below zero.
+    /// Normal force on the point, N; zero or more.
     pub(crate) force_n: f64,
-    /// The Lagrange multiplier as a depth: the force of the last update over the stiffness, mm.
+    /// The Lagrange multiplier as a depth, mm: the force of the last update divided by the
+    /// stiffness.
     pub(crate) multiplier_mm: f64,
     /// Factor of this contact's stiffness.
     pub(crate) stiffening: f64,
-    /// Where the distance was computed last, in the shape's frame.
+    /// Where the distance was last computed, in the shape's frame.
     measured_at_mm: DVec3,
-    /// The distance there. A signed distance changes no faster than its point moves.
+    /// The distance there, mm. A signed distance changes by at most the distance that its point
+    /// moves.
     pub(super) measured_mm: f64,
 }
 
 impl Touch {
-    /// Out of touch.
+    /// Out of contact.
     pub(super) const OFF: Self = Self {
         gap_mm: 0.0,
         normal: DVec3::ZERO,
@@ -48,13 +53,13 @@ impl Touch {
         measured_mm: 0.0,
     };
 
-    /// Least distance that a point in the shape's frame can have, mm.
+    /// Lower bound of the distance of a point in the shape's frame, mm.
     #[inline]
     pub(super) fn bound_mm(&self, local_mm: DVec3) -> f64 {
         self.measured_mm - local_mm.distance(self.measured_at_mm)
     }
 
-    /// Makes the present force the multiplier, for a contact with this factor of stiffness.
+    /// Makes the present force the multiplier, for a contact whose stiffness has this factor.
     pub(super) fn update_multiplier(&mut self, stiffening: f64) {
         let multiplier_mm = (self.multiplier_mm - self.gap_mm).max(0.0);
         self.multiplier_mm = multiplier_mm * self.stiffening / stiffening;
@@ -63,7 +68,8 @@ impl Touch {
 }
 
 impl RigidBody<'_> {
-    /// Updates gap, normal and force of a point at its present position; returns its contact energy, N mm.
+    /// Updates gap, normal and force of a point at its present position; returns its contact
+    /// energy, N mm.
     #[inline]
     pub(crate) fn touch(&self, touch: &mut Touch, point: &ContactPoint, at_mm: DVec3) -> f64 {
         let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
@@ -84,7 +90,7 @@ impl RigidBody<'_> {
         energy
     }
 
-    /// Distance of a point from the shape, mm, and the way out in the gel's frame.
+    /// Distance of a point from the shape, mm, and the outward direction in the gel's frame.
     #[inline]
     fn nearest(&self, local_mm: DVec3) -> (f64, DVec3) {
         let distance = self.shape.signed_distance(local_mm);
@@ -94,7 +100,7 @@ impl RigidBody<'_> {
         )
     }
 
-    /// Whether a point is nearer than this to the shape.
+    /// Whether a point is nearer to the shape than `reach_mm`.
     pub(super) fn is_within(&self, touch: &mut Touch, at_mm: DVec3, reach_mm: f64) -> bool {
         let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
         if touch.bound_mm(local_mm) >= reach_mm {
@@ -126,13 +132,15 @@ impl RigidBody<'_> {
         normal * force_n
     }
 
-    /// Second derivative of a touching point's contact energy, N/mm: `k n⊗n - f ∇²g`, `k` the slope of the force.
+    /// Second derivative of the contact energy of a point in contact, N/mm: `k n⊗n - f ∇²g`, where
+    /// `k` is the slope of the force.
     pub(crate) fn stiffness(&self, touch: &Touch, point: &ContactPoint, at_mm: DVec3) -> DMat3 {
         let normal = touch.normal;
         let stiffness = point.stiffness * touch.stiffening;
         let (_, _, stiffness) = penalty(touch.gap_mm - touch.multiplier_mm, stiffness);
         let mut sum = outer(normal * stiffness, normal);
-        // Quadrature points inside triangles can be deep, near the medial axis of a shape, where normals jump.
+        // Quadrature points inside of triangles can be deep, near the medial axis of a shape, where
+        // normals jump.
         if !point.is_node() {
             return sum;
         }
@@ -150,7 +158,8 @@ impl RigidBody<'_> {
         let (along_tangent, along_other) = (slope(tangent), slope(other));
         let mixed = 0.5 * (along_tangent.dot(other) + along_other.dot(tangent));
         let (first, second) = (along_tangent.dot(tangent), along_other.dot(other));
-        // Beside a sharp edge the sampled curvature has no bound; the tangent must not lose the contact's own stiffness.
+        // Beside a sharp edge the sampled curvature has no bound; the tangent must keep the
+        // contact's own stiffness.
         let most = first.max(second) + mixed.abs();
         let usual_mm = touch.multiplier_mm + CURVED_MM;
         let force = touch
@@ -163,7 +172,8 @@ impl RigidBody<'_> {
     }
 }
 
-/// Energy, force and slope of the force at a gap: the force rises with stiffness `κ`, after a quadratic start.
+/// Energy, force and slope of the force at a gap. The force rises with stiffness `κ`, after a
+/// quadratic start.
 #[inline]
 fn penalty(gap_mm: f64, stiffness: f64) -> (f64, f64, f64) {
     let depth_mm = (-gap_mm).max(0.0);

@@ -1,28 +1,36 @@
-//! Contact inside the boundary's triangles, for shapes that turn sharply within one, such as the rim of a punch.
+//! Contact inside of the boundary's triangles, for shapes that turn sharply within one, such as the
+//! rim of a punch.
 //!
-//! With contact at nodes alone, a triangle can cut off such a corner. Gel that is squeezed out from under a punch also takes its short edges along,
-//! so that at depth long edges lie across the rim; under a punch that slides, they do so in front of it. Therefore quadrature points inside triangles
-//! are pushed out of the shape as well, except for the depth that a flat triangle has in an arc as round as the shape (`bend`): where a shape is smooth, contact at nodes is enough. There are more
-//! quadrature points than the nodes have degrees of freedom, so they cannot all be exactly outside: they are softer than nodes and have no multiplier.
+//! With contact at nodes alone, a triangle can cut off such a rim. Gel that is squeezed out from
+//! under a punch also takes its short edges along, so that at depth, long edges lie across the rim;
+//! under a sliding punch, they do so in front of it. Therefore quadrature points inside of
+//! triangles are pushed out of the shape as well, except for the depth that a flat triangle has in
+//! an arc as round as the shape (`bend`): where a shape is smooth, contact at nodes is enough.
+//! There are more quadrature points than the nodes have degrees of freedom, so they cannot all be
+//! exactly outside: they are softer than nodes and have no multiplier.
 
 use glam::DVec3;
 
 use super::point::ContactPoint;
 
-/// Parts along each side into which a triangle is cut. A quadrature point is in the middle of each part.
+/// Number of parts of each side when a triangle is cut. A quadrature point is in the middle of each
+/// part of the triangle.
 const CUTS: u32 = 3;
 
 /// Corners of each side.
 pub(super) const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
-/// Factor of the depth in an arc: an arc only approximates the shape, and points must not be in touch because of that.
+/// Factor of the depth in an arc. An arc only approximates the shape, and points must not be in
+/// contact because of that.
 const MARGIN: f64 = 1.25;
 
-/// Stiffness of the points inside as part of that of nodes. Stiffer ones widen a punch by a part of an edge, and let its force rise in steps, as one row of nodes after the
-/// other slides around its rim; softer ones narrow it.
+/// Stiffness of the points inside, relative to that of nodes. Stiffer ones widen a punch by a
+/// fraction of an edge and let its force rise in steps, as rows of nodes slide around its rim one
+/// after the other; softer ones narrow it.
 const SOFTNESS: f64 = 0.25;
 
-/// How much stiffer they are where the triangle lies across a wall that is thinner than itself: no node presses there.
+/// Factor of their stiffness where the triangle lies across a wall that is thinner than the
+/// triangle, because no node presses there.
 const ACROSS_WALL: f64 = 2.5;
 
 /// A triangle of the boundary.
@@ -30,13 +38,14 @@ pub(crate) struct BoundaryTriangle {
     pub(super) nodes: [u32; 3],
     /// Indices of its free corners among the boundary's nodes.
     free: Vec<u32>,
-    /// Of all points inside together, N/mm.
+    /// Stiffness of all points inside together, N/mm.
     stiffness: f64,
     pub(super) longest_mm: f64,
 }
 
 impl BoundaryTriangle {
-    /// A triangle that has such free corners; `stiffness` is that of contact per area and inverse edge, MPa.
+    /// A triangle with these free corners; `stiffness` is the contact stiffness per area and
+    /// inverse edge length, MPa.
     pub(crate) fn new(nodes: [u32; 3], at_mm: [DVec3; 3], free: Vec<u32>, stiffness: f64) -> Self {
         let [a, b, c] = at_mm;
         let area_mm2 = 0.5 * (b - a).cross(c - a).length();
@@ -49,12 +58,13 @@ impl BoundaryTriangle {
         }
     }
 
-    /// Its free corners, by their index among the boundary's nodes.
+    /// Its free corners, as indices of the boundary's nodes.
     pub(super) fn free_corners(&self) -> impl Iterator<Item = usize> {
         self.free.iter().map(|&corner| corner as usize)
     }
 
-    /// The quadrature points of a triangle along whose sides the shape bends so: [`bend_mm`](super::rigid_body::RigidBody::bend_mm).
+    /// The quadrature points of a triangle, given the bends of the shape along its sides: see
+    /// [`bend_mm`](super::rigid_body::RigidBody::bend_mm).
     pub(super) fn points(
         &self,
         bends_mm: [f64; 3],
@@ -63,7 +73,8 @@ impl BoundaryTriangle {
         let stiffening = if is_across_wall { ACROSS_WALL } else { 1.0 };
         let stiffness = stiffening * self.stiffness / f64::from(CUTS * CUTS);
         middles().map(move |weights| {
-            // Of an arc of curvature c, which bends by c l² over a length l: c/2 times the sum of w w l² over the sides.
+            // For an arc of curvature c, which bends by c l² over a length l: c/2 times the sum of
+            // w w l² over the sides.
             let sides = SIDES.into_iter().zip(bends_mm);
             let slack_mm = 0.5
                 * MARGIN
@@ -79,7 +90,7 @@ impl BoundaryTriangle {
 pub(super) fn middles() -> impl Iterator<Item = [f64; 3]> {
     let part = |value: u32| f64::from(value) / f64::from(3 * CUTS);
     (0..CUTS).flat_map(move |row| {
-        // Counted from the first corner, a row has upright parts and between them inverted ones.
+        // Counted from the first corner, a row has upright parts, and inverted ones between them.
         (0..2 * row + 1).map(move |part_of_row| {
             let (away, along) = if part_of_row % 2 == 0 { (2, 1) } else { (1, 2) };
             let (away, along) = (3 * row + away, 3 * (part_of_row / 2) + along);

@@ -1,11 +1,12 @@
-//! The deformation at a quadrature point, of eight tetrahedra at a time, and the algebra of 3 × 3 matrices.
+//! The deformation at a quadrature point, for eight tetrahedra at a time, and algebra of 3 × 3
+//! matrices.
 
 use twintac_material::Invariants;
 
 use super::table::{NODES, QuadraturePoint};
 use crate::wide::{Real, Wide};
 
-/// A matrix by rows.
+/// A matrix, row by row.
 pub(crate) type Matrix<T> = [[Wide<T>; 3]; 3];
 
 /// A vector.
@@ -26,7 +27,7 @@ impl<T: Real> Deformation<T> {
         let mut f = [[Wide::zero(); 3]; 3];
         for i in 0..3 {
             f[i][i] = Wide::splat(1.0);
-            // Along the coarse tetrahedron's edges first, then in space.
+            // First along the edges of the coarse tetrahedron, then in space.
             let mut along = [Wide::zero(); 3];
             for (node, slopes) in point.nodes[1..].iter().zip(&point.slopes) {
                 let u = ten[*node as usize][i] - origin[i];
@@ -68,7 +69,8 @@ impl<T: Real> Deformation<T> {
     }
 }
 
-/// Gradients of the shape functions at a point, in the order of its nodes, from the gradients of the barycentric coordinates.
+/// Gradients of the shape functions at a point, in the order of its nodes, from the gradients of
+/// the barycentric coordinates.
 #[inline(always)]
 pub(super) fn gradients<T: Real>(coarse: &Matrix<T>, point: &QuadraturePoint) -> [Vector<T>; NODES] {
     let mut all = [[Wide::zero(); 3]; NODES];
@@ -153,7 +155,7 @@ pub(super) fn apply<T: Real>(m: &Matrix<T>, v: &Vector<T>) -> Vector<T> {
     [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
 }
 
-/// A symmetric matrix from xx, yy, zz, yz, xz, xy.
+/// A symmetric matrix from its entries xx, yy, zz, yz, xz, xy.
 #[inline(always)]
 pub(super) fn symmetric<T: Real>(entries: &[Wide<f64>; 6]) -> Matrix<T> {
     let [xx, yy, zz, yz, xz, xy] = entries.map(|entry| entry.cast());

@@ -12,10 +12,10 @@ use crate::wide::{LANES, Wide};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Element {
-    /// Linearly on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
+    /// Linear on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
     #[default]
     Composite,
-    /// Quadratically on each tetrahedron: more accurate with the same nodes, for reference.
+    /// Quadratic on each tetrahedron: more accurate with the same nodes; used as a reference.
     Quadratic,
 }
 
@@ -30,27 +30,28 @@ impl Element {
 
 /// Eight coarse tetrahedra with the same table, side by side.
 pub(crate) struct Pack {
-    /// Which of the elements' tables is theirs.
+    /// Index of their table.
     pub(super) table: usize,
     pub(super) nodes: [[u32; LANES]; NODES],
-    /// Gradients of the barycentric coordinates of all corners but the first, 1/mm.
+    /// Gradients of the barycentric coordinates of all corners except for the first, 1/mm.
     pub(super) gradients: [[Wide<f64>; 3]; 3],
     pub(super) volume_mm3: Wide<f64>,
-    /// Index of its first point, for the history variables.
+    /// Index of their first quadrature point, for the history variables.
     pub(super) first_point: usize,
 }
 
-/// All elements of a body. Slot `8 i + l` is lane `l` of pack `i`; not all slots hold a tetrahedron.
+/// All elements of a body. Slot `8 i + l` is lane `l` of pack `i`; not every slot has a
+/// tetrahedron.
 pub(crate) struct Elements {
     pub(crate) tables: Vec<Table>,
     pub(crate) packs: Vec<Pack>,
-    /// Where the packs of the first half end, and those of the second.
+    /// End of the packs of the first half, and of the second.
     pub(crate) halves: [usize; 2],
     /// The slot of each coarse tetrahedron.
     pub(crate) slots: Vec<u32>,
 }
 
-/// Which half of the body a coarse tetrahedron lies in with all its free nodes.
+/// The half of the body that contains all free nodes of a coarse tetrahedron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {
     First,
@@ -59,8 +60,8 @@ pub(crate) enum Side {
 }
 
 impl Elements {
-    /// `parents` are the ten nodes of each coarse tetrahedron, `children` the eight tetrahedra that each is cut into, and `sides` says which
-    /// half of the body it lies in.
+    /// `parents` are the ten nodes of each coarse tetrahedron, `children` the eight tetrahedra that
+    /// it is cut into, and `sides` the half of the body that it is in.
     pub(crate) fn new(
         element: Element,
         nodes_mm: &[DVec3],
@@ -86,7 +87,7 @@ impl Elements {
                 })
             })
             .collect();
-        // Neighbours close to each other.
+        // Neighbours are close to each other in this order.
         let mut order: Vec<usize> = (0..parents.len()).collect();
         order.sort_by_key(|&parent| (sides[parent], table_of[parent], parents[parent].iter().min()));
         for same in order.chunk_by(|&a, &b| (sides[a], table_of[a]) == (sides[b], table_of[b])) {
@@ -112,14 +113,14 @@ impl Elements {
         elements
     }
 
-    /// Points in all packs.
+    /// Number of points in all packs.
     pub(crate) fn n_points(&self) -> usize {
         self.packs
             .last()
             .map_or(0, |pack| pack.first_point + self.tables[pack.table].points.len())
     }
 
-    /// The table of what is in a slot.
+    /// The table of the tetrahedron in a slot.
     pub(crate) fn table_of(&self, slot: u32) -> &Table {
         &self.tables[self.packs[slot as usize / LANES].table]
     }
@@ -128,7 +129,7 @@ impl Elements {
         self.packs.len() * LANES
     }
 
-    /// Volume that belongs to each coarse corner of each slot, mm³.
+    /// Volume of each coarse corner of each slot, mm³.
     pub(crate) fn corner_volumes_mm3(&self) -> Vec<[f64; 4]> {
         let mut volumes_mm3 = Vec::with_capacity(self.n_slots());
         for pack in &self.packs {
@@ -147,7 +148,7 @@ impl Elements {
         volumes_mm3
     }
 
-    /// `Σ V |G|²` of each node, mm.
+    /// `Σ V |G|²` for each node, mm.
     pub(crate) fn node_stiffness_mm(&self, n_nodes: usize) -> Vec<f64> {
         let mut sums = vec![0.0; n_nodes];
         for pack in &self.packs {
@@ -166,7 +167,7 @@ impl Elements {
 }
 
 impl Pack {
-    /// The ten nodes' displacements.
+    /// The displacements of the ten nodes.
     #[inline(always)]
     pub(super) fn gather(&self, displacements_mm: &[DVec3]) -> [Vector<f64>; NODES] {
         let mut ten = [[Wide([0.0; LANES]); 3]; NODES];
@@ -181,7 +182,7 @@ impl Pack {
         ten
     }
 
-    /// The tetrahedra `members` of all `parents`.
+    /// A pack of the tetrahedra `members` of all `parents`.
     fn new(
         table: usize,
         nodes_mm: &[DVec3],
@@ -197,7 +198,7 @@ impl Pack {
             first_point,
         };
         for lane in 0..LANES {
-            // Empty lanes repeat the first tetrahedron, with no volume.
+            // Empty lanes repeat the first tetrahedron, without volume.
             let parent = parents[*members.get(lane).unwrap_or(&members[0])];
             for (nodes, node) in pack.nodes.iter_mut().zip(parent) {
                 nodes[lane] = node;

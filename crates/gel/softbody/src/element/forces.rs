@@ -1,5 +1,5 @@
-//! Volume changes, energy and nodal forces. The force at node `a` is `Σ V (P - p J F⁻ᵀ) G_a` over the points, with the stress `P` of the law and
-//! the pressure `p`.
+//! Volume changes, energy and nodal forces. The force at node `a` is `Σ V (P - p J F⁻ᵀ) G_a` over
+//! the quadrature points, with the stress `P` of the law and the pressure `p`.
 
 use glam::DVec3;
 use pulp::NullaryFnOnce;
@@ -12,19 +12,19 @@ use super::table::{NODES, Table};
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::{LANES, Wide, least};
 
-/// Forces of the elements on their nodes, to be summed node by node.
+/// Forces of the elements on their nodes, which are summed for each node.
 #[derive(Default)]
 pub(crate) struct Forces {
-    /// By slot. N
+    /// By slot, N.
     pub(crate) forces_n: Vec<[DVec3; NODES]>,
-    /// By pack. N mm
+    /// By pack, N mm.
     pub(crate) energies: Vec<f64>,
 }
 
-/// Volume changes of the elements' corners, to be summed corner by corner.
+/// Volume changes of the elements' corners, which are summed for each corner.
 #[derive(Default)]
 pub(crate) struct Volumes {
-    /// By slot. mm³
+    /// By slot, mm³.
     pub(crate) changes_mm3: Vec<[f64; 4]>,
     /// Smallest volume ratio, by pack.
     pub(crate) least: Vec<f64>,
@@ -49,7 +49,8 @@ struct ForceKernel<'a> {
 }
 
 impl Elements {
-    /// Volume changes at given displacements; returns the smallest volume ratio, or NaN if one is NaN.
+    /// Volume changes at the given displacements; returns the smallest volume ratio, or NaN if one
+    /// is NaN.
     pub(crate) fn volumes(&self, displacements_mm: &[DVec3], out: &mut Volumes) -> f64 {
         out.changes_mm3.resize(self.n_slots(), [0.0; 4]);
         out.least.resize(self.packs.len(), 0.0);
@@ -73,7 +74,8 @@ impl Elements {
         out.least.iter().copied().fold(f64::INFINITY, least)
     }
 
-    /// Forces and energies of the change of shape, at given displacements and pressures of the slots' corners.
+    /// Forces and energies of the change of shape, at the given displacements and pressures of the
+    /// slots' corners.
     pub(crate) fn forces(
         &self,
         response: &Response,
@@ -169,7 +171,7 @@ impl NullaryFnOnce for ForceKernel<'_> {
                     for j in 0..3 {
                         row[j] = row[j].plus_product(-pressure, deformation.cofactor[i][j]) * volume_mm3;
                     }
-                    // Along the coarse tetrahedron's edges, then to the nodes.
+                    // First along the edges of the coarse tetrahedron, then to the nodes.
                     let mut first = Wide::zero();
                     let along = apply(&pack.gradients, &row);
                     for (node, slopes) in point.nodes[1..].iter().zip(&point.slopes) {

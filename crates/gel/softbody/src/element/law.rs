@@ -1,6 +1,7 @@
 //! The material's law at the points of a pack.
 //!
-//! Only what stands here is compiled once for each law. The kernels around it are compiled once, and branch on the law's properties.
+//! Only this module is compiled once for each law. The kernels around it are compiled once, and
+//! branch on the properties of the law.
 
 use pulp::NullaryFnOnce;
 use twintac_material::{
@@ -13,7 +14,7 @@ use super::table::{MAX_POINTS, NODES, Table};
 use crate::parallel::dispatch;
 use crate::wide::{Real, Wide};
 
-/// What a law is a function of, at eight points.
+/// The arguments of a law, at eight points.
 #[derive(Clone, Copy)]
 pub(super) struct Arguments<T> {
     pub(super) invariants: Invariants<T>,
@@ -26,7 +27,7 @@ pub(super) struct Arguments<T> {
 pub(super) struct FirstDerivatives {
     pub(super) energy: Wide<f64>,
     pub(super) slopes: Slopes<f64>,
-    /// Of the part in the principal stretches.
+    /// Energy of the part in the principal stretches.
     pub(super) stretch_energy: Wide<f64>,
     pub(super) stretch_slopes: Vector<f64>,
 }
@@ -36,18 +37,19 @@ pub(super) struct FirstDerivatives {
 pub(super) struct SecondDerivatives {
     pub(super) slopes: Slopes<f32>,
     pub(super) curvatures: Curvatures<f32>,
-    /// Of the part in the principal stretches.
+    /// Derivatives of the part in the principal stretches.
     pub(super) stretches: StretchSlopes<f32>,
 }
 
-/// Derivatives of a law in some precision.
+/// Derivatives of a law, in some precision.
 pub(super) trait Derivatives: Copy {
     type Precision: Real;
 
-    /// Those of no energy.
+    /// The derivatives of an energy that is zero.
     fn none() -> Self;
 
-    /// Sets those of a law. Without a part in the stretches their derivatives stay as they are, which is zero.
+    /// Sets the derivatives of a law. Without a part in the stretches, the derivatives of that part
+    /// stay as they are, which is zero.
     fn set<L: Law>(&mut self, law: &L, at: &Arguments<Self::Precision>);
 }
 
@@ -100,7 +102,8 @@ impl Derivatives for SecondDerivatives {
     }
 }
 
-/// The points of a pack: how they are deformed, and what the law says there. Scratch memory of a kernel, filled pack by pack.
+/// The points of a pack: their deformation, and the derivatives of the law. Scratch memory of a
+/// kernel, filled pack by pack.
 pub(super) struct Points<D: Derivatives> {
     pub(super) deformations: [Deformation<D::Precision>; MAX_POINTS],
     pub(super) arguments: [Arguments<D::Precision>; MAX_POINTS],
@@ -133,7 +136,8 @@ impl<D: Derivatives> Points<D> {
         }
     }
 
-    /// Works out the points of a pack with this table, from the displacements of its ten nodes and the gradients of its coordinates.
+    /// Evaluates the points of a pack with this table, from the displacements of its ten nodes and
+    /// the gradients of its coordinates.
     #[inline(always)]
     pub(super) fn evaluate(
         &mut self,
@@ -159,7 +163,8 @@ impl<D: Derivatives> Points<D> {
     }
 }
 
-/// Evaluates a law with the vectors that the processor has. Not inlined, so that it is compiled once, whoever calls it.
+/// Evaluates a law with the vector instructions of the processor. It is not inlined, so that it is
+/// compiled once for all callers.
 #[inline(never)]
 fn evaluate<D: Derivatives>(model: &Model, at: &[Arguments<D::Precision>], found: &mut [D]) {
     model.visit(Evaluation { at, found });

@@ -1,13 +1,15 @@
-//! The elements: tetrahedra with a linear pressure and displacements of twice the resolution.
+//! The elements: tetrahedra with a linear pressure, and displacements of twice the resolution.
 //!
-//! Every coarse tetrahedron has ten nodes: its corners and the midpoints of its edges. An element is a set of quadrature points inside it, with
-//! the shape functions of displacements and pressures there. With volumes `V`, gradients `G` of the shape functions and
-//! `F = 1 + Σ u_a ⊗ G_a` the energy is `Σ V W(F) + ½ Σ_c κ g_c²/m_c`, where `g_c = Σ w_c V (J - 1)` is the volume change of a corner `c`,
-//! `w_c` its weight at each point, and `m_c = Σ w_c V` its volume. The pressure of a corner is `p_c = -κ g_c/m_c`. This is a mixed
-//! formulation with a lumped mass matrix of the pressures, from which the pressures are eliminated.
+//! Every coarse tetrahedron has ten nodes: its corners and the midpoints of its edges. An element
+//! is a set of quadrature points inside of it, with the shape functions of displacements and
+//! pressures there. With volumes `V`, gradients `G` of the shape functions and
+//! `F = 1 + Σ u_a ⊗ G_a`, the energy is `Σ V W(F) + ½ Σ_c κ g_c²/m_c`. Here `g_c = Σ w_c V (J - 1)`
+//! is the volume change of a corner `c`, `w_c` its weight at each point, and `m_c = Σ w_c V` its
+//! volume. The pressure of a corner is `p_c = -κ g_c/m_c`. This is a mixed formulation with a
+//! lumped mass matrix of the pressures, from which the pressures are eliminated.
 //!
-//! Kernels work on packs of eight tetrahedra. They are compiled once for all materials: [`law`] evaluates the material's law for all points of a
-//! pack at once.
+//! Kernels work on packs of eight tetrahedra. They are compiled once for all materials: [`law`]
+//! evaluates the material's law for all points of a pack at once.
 
 mod composite;
 mod deformation;

@@ -1,16 +1,18 @@
 //! Principal axes of symmetric matrices, eight at a time.
 //!
-//! This is written here and not taken from a library because eight matrices are rotated side by side in the vectors of the processor, inside the
-//! kernels; a library such as faer decomposes one matrix at a time, with other round-off.
+//! This is code of our own because eight matrices are rotated side by side in the vector registers
+//! of the processor, inside of the kernels; a library such as faer decomposes one matrix at a time,
+//! with other round-off.
 
 use super::deformation::{Matrix, Vector};
 use crate::wide::{LANES, Real, Wide};
 
-/// Limit of the rounds of rotations, which no matrix reaches.
+/// Largest number of rounds of rotations, which no matrix reaches.
 const MAX_ROUNDS: usize = 10;
 
-/// Eigenvalues of symmetric matrices, and orthonormal eigenvectors in the same order: Jacobi's rotations (1846), which find orthonormal vectors
-/// to round-off whether eigenvalues coincide or not.
+/// Eigenvalues of symmetric matrices, and orthonormal eigenvectors in the same order, by the
+/// rotations of Jacobi (1846). The vectors are orthonormal to round-off, also for equal
+/// eigenvalues.
 #[inline(always)]
 pub(super) fn principal<T: Real>(matrix: &Matrix<T>) -> (Vector<T>, [Vector<T>; 3]) {
     let (zero, one) = (Wide::zero(), Wide::splat(1.0));
@@ -28,7 +30,7 @@ pub(super) fn principal<T: Real>(matrix: &Matrix<T>) -> (Vector<T>, [Vector<T>; 
     ([xx, yy, zz], axes)
 }
 
-/// Whether what is off the diagonal is below round-off.
+/// Whether the entries off the diagonal are below round-off.
 #[inline(always)]
 fn is_diagonal<T: Real>(diagonal: Vector<T>, [a, b, c]: Vector<T>) -> bool {
     let trace = diagonal[0] + diagonal[1] + diagonal[2];
@@ -39,7 +41,7 @@ fn is_diagonal<T: Real>(diagonal: Vector<T>, [a, b, c]: Vector<T>) -> bool {
     })
 }
 
-/// Rotates axes `p` and `q` so that `a_pq` vanishes.
+/// Rotates the axes `p` and `q` so that `a_pq` vanishes.
 #[inline(always)]
 fn rotate<T: Real>(
     [pp, qq, pq]: [&mut Wide<T>; 3],
@@ -49,7 +51,7 @@ fn rotate<T: Real>(
     let difference = *qq - *pp;
     let twice = *pq + *pq;
     let root = (difference * difference + twice * twice).sqrt();
-    // The tangent of the angle, at most 1; no angle where there is nothing to rotate.
+    // The tangent of the angle, at most 1; zero if there is nothing to rotate.
     let mut tangent = Wide::zero();
     for lane in 0..LANES {
         let (difference, twice, root) = (difference.0[lane], twice.0[lane], root.0[lane]);

@@ -1,12 +1,14 @@
-//! The quadratic element P2/P1 (Taylor and Hood, Comput. Fluids 1, 1973), with the four quadrature points that integrate quadratic functions
-//! exactly. It is more accurate than the composite element on the same nodes, and more expensive.
+//! The quadratic element P2/P1 (Taylor and Hood, Comput. Fluids 1, 1973), with the four quadrature
+//! points that integrate quadratic functions exactly. On the same nodes it is more accurate than
+//! the composite element, and more expensive.
 
 use super::table::{NODES, QuadraturePoint, Table, ends};
 
-/// Barycentric coordinate of a point for its nearest corner; the other three are equal.
+/// Barycentric coordinate of a quadrature point for its nearest corner; the other three coordinates
+/// are equal.
 const NEAR: f64 = 0.585_410_196_624_968_5;
 
-/// The table of any coarse tetrahedron.
+/// The table, which is the same for all coarse tetrahedra.
 pub(super) fn table() -> Table {
     Table::new((0..4).map(point).collect())
 }
@@ -14,7 +16,8 @@ pub(super) fn table() -> Table {
 fn point(nearest: usize) -> QuadraturePoint {
     let mut coordinates = [(1.0 - NEAR) / 3.0; 4];
     coordinates[nearest] = NEAR;
-    // Slopes in the four barycentric coordinates. Along an edge from the first corner one coordinate rises and the first falls.
+    // Derivatives by the four barycentric coordinates. Along an edge from the first corner, one
+    // coordinate rises and the first falls.
     let slopes = |node: u8| {
         let mut in_each = [0.0; 4];
         let [a, b] = ends(node).map(usize::from);

@@ -1,20 +1,21 @@
-//! The state of the material that a step starts from.
+//! The state of the material from which a step starts.
 
 use twintac_material::Material;
 
 use crate::relaxation::{History, Relaxation, Symmetric};
 
-/// What the stress at a point depends on over a step besides the displacements.
+/// Everything other than the displacements that the stress at a point depends on during a step.
 pub(crate) struct Response<'a> {
     pub(crate) material: &'a Material,
     pub(crate) relaxation: Relaxation,
     pub(crate) history: &'a History,
-    /// The constant part of the stress at each point, MPa; empty for an elastic material. `[n_points]`
+    /// The constant part of the stress at each point, MPa; empty for an elastic material;
+    /// `[n_points]`.
     offsets: Vec<Symmetric<f64>>,
 }
 
 impl<'a> Response<'a> {
-    /// Over a step of so long, from the history variables at its start.
+    /// The response during a step of this length, from the history variables at its start.
     pub(crate) fn new(material: &'a Material, time_step_s: f64, history: &'a History) -> Self {
         let relaxation = Relaxation::new(&material.prony, time_step_s);
         Self {
@@ -25,7 +26,7 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// That of the same material without history variables.
+    /// The response of the same material without history variables.
     pub(crate) fn instantaneous(material: &'a Material, no_history: &'a History) -> Self {
         Self {
             material,
@@ -35,7 +36,8 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// The constant part of the stress at a point over this step, MPa; none for an elastic material.
+    /// The constant part of the stress at a point in this step, MPa; `None` for an elastic
+    /// material.
     #[inline(always)]
     pub(super) fn offset(&self, point: usize) -> Option<&Symmetric<f64>> {
         self.offsets.get(point)

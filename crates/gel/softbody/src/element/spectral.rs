@@ -1,11 +1,14 @@
-//! The part of stress and tangent that comes from a law of the principal stretches (Simo and Taylor, Comput. Methods Appl. Mech. Eng. 85, 1991; Holzapfel,
-//! Nonlinear Solid Mechanics, 2000, section 6.6).
+//! The part of stress and tangent that comes from a law of the principal stretches (Simo and
+//! Taylor, Comput. Methods Appl. Mech. Eng. 85, 1991; Holzapfel, Nonlinear Solid Mechanics, 2000,
+//! section 6.6).
 //!
-//! `C = Σ x_k N_k ⊗ N_k`, `x = λ²`, and with the slopes `β_k = f'(ln λ̄_k)` the principal Kirchhoff stresses are `τ_k = β_k - (β_1 + β_2 + β_3)/3`.
-//! In the principal axes the second derivative of the energy has the entries
-//! `∂²W/∂F_kk∂F_ll = (∂τ_k/∂ln λ_l - δ_kl τ_k)/(λ_k λ_l)`, `∂²W/∂F_kl² = q = (τ_k - τ_l)/(x_k - x_l)` and
-//! `∂²W/∂F_kl∂F_lk = (q (x_k + x_l)/2 - (τ_k + τ_l)/2)/(λ_k λ_l)`, where only `q` is a quotient of differences:
-//! `q = m / 2e`, with `m = (β_k - β_l)/(ln λ_k - ln λ_l)` of the law and `e = (x_k - x_l)/(ln x_k - ln x_l)`, both exact for equal stretches.
+//! With `C = Σ x_k N_k ⊗ N_k`, `x = λ²` and the derivatives `β_k = f'(ln λ̄_k)`, the principal
+//! Kirchhoff stresses are `τ_k = β_k - (β_1 + β_2 + β_3)/3`. In the principal axes the second
+//! derivative of the energy has the entries `∂²W/∂F_kk∂F_ll = (∂τ_k/∂ln λ_l - δ_kl τ_k)/(λ_k λ_l)`,
+//! `∂²W/∂F_kl² = q = (τ_k - τ_l)/(x_k - x_l)` and
+//! `∂²W/∂F_kl∂F_lk = (q (x_k + x_l)/2 - (τ_k + τ_l)/2)/(λ_k λ_l)`. Only `q` is a quotient of
+//! differences: `q = m / 2e`, with `m = (β_k - β_l)/(ln λ_k - ln λ_l)` of the law and
+//! `e = (x_k - x_l)/(ln x_k - ln x_l)`, both exact for equal stretches.
 
 use twintac_material::StretchSlopes;
 
@@ -14,7 +17,8 @@ use super::principal::principal;
 use super::table::{NODES, QuadraturePoint};
 use crate::wide::{Real, Wide};
 
-/// Squares of the stretches, their logarithms, those of the isochoric stretches, and the axes at rest.
+/// Squares of the stretches, their logarithms, those of the isochoric stretches, and the axes in
+/// the undeformed state.
 #[derive(Clone, Copy)]
 pub(super) struct Principal<T> {
     squares: Vector<T>,
@@ -24,7 +28,7 @@ pub(super) struct Principal<T> {
 }
 
 impl<T: Real> Principal<T> {
-    /// A value to start from, of no deformation.
+    /// The values without deformation, as a start.
     pub(super) fn zero() -> Self {
         let zero = [Wide::zero(); 3];
         Self {
@@ -35,7 +39,7 @@ impl<T: Real> Principal<T> {
         }
     }
 
-    /// Those of a deformation gradient.
+    /// The values of a deformation gradient.
     #[inline(always)]
     pub(super) fn new(f: &Matrix<T>) -> Self {
         let (squares, axes) = principal(&right_cauchy_green(f));
@@ -50,14 +54,14 @@ impl<T: Real> Principal<T> {
     }
 }
 
-/// What is left without the mean.
+/// The values minus their mean.
 #[inline(always)]
 fn deviator<T: Real>(values: &Vector<T>) -> Vector<T> {
     let mean = (values[0] + values[1] + values[2]) * Wide::splat(1.0 / 3.0);
     values.map(|value| value - mean)
 }
 
-/// Adds `∂W/∂F` times a factor, from the slopes `β` of the law.
+/// Adds `∂W/∂F` times a factor, from the derivatives `β` of the law.
 #[inline(always)]
 pub(super) fn add_stress(
     at: &Principal<f64>,
@@ -127,7 +131,8 @@ fn stiffness(
     }
 }
 
-/// Adds `∂²W/∂F²` times a factor to the blocks of all pairs of a point's nodes, from the derivatives of the law.
+/// Adds `∂²W/∂F²` times a factor to the blocks of all pairs of a point's nodes, from the
+/// derivatives of the law.
 #[inline(always)]
 pub(super) fn add_stiffness(
     at: &Principal<f32>,

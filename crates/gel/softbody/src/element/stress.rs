@@ -1,7 +1,8 @@
 //! Stress at the points of a pack.
 //!
-//! `P = ∂W/∂F = 2 w_1 F + 2 w_2 (I1 F - F C) + w_J J F⁻ᵀ` from the derivatives of the energy in the invariants, and for a
-//! material with history variables `J^(-2/3) (F O - (O:C)/3 F⁻ᵀ)` from their constant part `O`. The pressure's part is not in it.
+//! `P = ∂W/∂F = 2 w_1 F + 2 w_2 (I1 F - F C) + w_J J F⁻ᵀ` from the derivatives of the energy by the
+//! invariants. A material with history variables adds `J^(-2/3) (F O - (O:C)/3 F⁻ᵀ)` from their
+//! constant part `O`. The part of the pressure is not included.
 
 use glam::DVec3;
 use pulp::NullaryFnOnce;
@@ -25,7 +26,7 @@ pub(super) struct Stresses {
     points: Points<FirstDerivatives>,
     /// First Piola–Kirchhoff stress `P`, MPa.
     pub(super) stresses: [Matrix<f64>; MAX_POINTS],
-    /// Energy per volume at rest, MPa.
+    /// Energy per undeformed volume, MPa.
     pub(super) energies: [Wide<f64>; MAX_POINTS],
 }
 
@@ -44,7 +45,8 @@ impl Stresses {
         &self.points.deformations[point]
     }
 
-    /// Works out a pack with this table, from the displacements of its ten nodes. Not inlined, so that it is compiled once, whoever calls it.
+    /// Evaluates a pack with this table, from the displacements of its ten nodes. It is not
+    /// inlined, so that it is compiled once for all callers.
     #[inline(never)]
     pub(super) fn evaluate(
         &mut self,
@@ -64,7 +66,7 @@ impl Stresses {
         });
     }
 
-    /// Stress and energy at a point that has been evaluated.
+    /// Computes stress and energy at a point whose deformation and law have been evaluated.
     #[inline(always)]
     fn finish(
         &mut self,
@@ -160,11 +162,11 @@ struct Point<'a> {
     /// Index among the points of all packs.
     index: usize,
     deformation: &'a Deformation<f64>,
-    /// First Piola–Kirchhoff stress without the pressure's part, MPa.
+    /// First Piola–Kirchhoff stress without the part of the pressure, MPa.
     stress: &'a Matrix<f64>,
 }
 
-/// Hands out the points of all packs.
+/// Calls `take` with the points of all packs.
 fn for_each_point(
     elements: &Elements,
     response: &Response,
@@ -199,14 +201,14 @@ impl Point<'_> {
         (self.kirchhoff(0, 0) + self.kirchhoff(1, 1) + self.kirchhoff(2, 2)) * Wide::splat(1.0 / 3.0)
     }
 
-    /// Volume at rest, mm³.
+    /// Undeformed volume, mm³.
     fn volume_mm3(&self) -> Wide<f64> {
         self.pack.volume_mm3 * Wide::splat(self.quadrature.volume)
     }
 }
 
-/// Sums over the points of the elements at each node, of the deviator of the Cauchy stress (xx, yy, zz, yz, xz, xy; MPa) times the deformed volume,
-/// and of that volume, mm³. `[n_nodes]`
+/// Sums at each node over the points of its elements: the deviator of the Cauchy stress (xx, yy,
+/// zz, yz, xz, xy; MPa) times the deformed volume, and that volume, mm³; `[n_nodes]`.
 pub(crate) fn mean_deviators(
     elements: &Elements,
     response: &Response,
@@ -239,8 +241,9 @@ pub(crate) fn mean_deviators(
     sums
 }
 
-/// What a law that is not isochoric adds to the hydrostatic pressure: sums over the points of each slot of the corners' shares of `-tr(σ)/3`,
-/// MPa, times the volume at rest, mm³; none for an isochoric law. `[n_slots]`
+/// The contribution of a law that is not isochoric to the hydrostatic pressure: sums over the
+/// points of each slot of the corners' shares of `-tr(σ)/3`, MPa, times the undeformed volume, mm³;
+/// `None` for an isochoric law; `[n_slots]`.
 pub(crate) fn hydrostatic_shares(
     elements: &Elements,
     response: &Response,
@@ -265,7 +268,7 @@ pub(crate) fn hydrostatic_shares(
     Some(shares)
 }
 
-/// Takes the history variables of all points to the end of a step.
+/// Updates the history variables of all points to the end of a step.
 pub(crate) fn update_history(
     elements: &Elements,
     material: &Material,
@@ -283,7 +286,7 @@ pub(crate) fn update_history(
     });
 }
 
-/// `S̃ = J^(2/3) F⁻¹ P`, `P` that of the change of shape: a deviator.
+/// `S̃ = J^(2/3) F⁻¹ P`, with the `P` of the change of shape: a deviator.
 fn instantaneous_deviator(point: &Point) -> [Wide<f64>; 6] {
     let Deformation {
         cofactor,
@@ -291,7 +294,7 @@ fn instantaneous_deviator(point: &Point) -> [Wide<f64>; 6] {
         ..
     } = *point.deformation;
     let root = volume_ratio.inverse_cube_root();
-    // F⁻¹ is the cofactor's transpose over J.
+    // F⁻¹ is the transpose of the cofactor divided by J.
     let scale = Wide::splat(1.0) / (root * root * volume_ratio);
     [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)].map(|(i, j)| {
         let column = |m: &Matrix<f64>, j: usize| [m[0][j], m[1][j], m[2][j]];

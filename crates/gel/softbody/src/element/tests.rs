@@ -11,7 +11,7 @@ use crate::{Material, Model, PronyTerm};
 /// Pressures of the corners, MPa.
 const CORNERS: [f64; 4] = [0.004, -0.002, 0.007, 0.001];
 
-/// One coarse tetrahedron and its eight.
+/// One coarse tetrahedron, and its eight parts.
 fn one(element: Element) -> (Vec<DVec3>, Elements) {
     let mesh = twintac_mesh::TetMesh {
         nodes_mm: vec![
@@ -50,7 +50,7 @@ fn material(model: Model, prony: Vec<PronyTerm>) -> Material {
     }
 }
 
-/// Energy at fixed pressures, and its slopes in the displacements.
+/// Energy at fixed pressures, and its derivatives by the displacements.
 fn energy(elements: &Elements, response: &Response, u: &[DVec3]) -> (f64, [DVec3; NODES]) {
     let (mut forces, mut volumes) = (Forces::default(), Volumes::default());
     elements.volumes(u, &mut volumes);
@@ -102,7 +102,7 @@ fn tangent(elements: &Elements, response: &Response, u: &[DVec3]) -> Vec<(usize,
     blocks
 }
 
-/// Compares forces to differences of the energy, and the tangent to differences of forces.
+/// Compares forces with differences of the energy, and the tangent with differences of forces.
 fn check_derivatives(elements: &Elements, response: &Response, u: &[DVec3]) -> Result<(), TestCaseError> {
     let step = 1e-5;
     let (_, forces) = energy(elements, response, u);
@@ -143,7 +143,7 @@ fn check_derivatives(elements: &Elements, response: &Response, u: &[DVec3]) -> R
     Ok(())
 }
 
-/// Three stretches, or two or three of them the same, or nearly so.
+/// Three stretches, of which two or three may be equal or nearly equal.
 fn stretches() -> impl Strategy<Value = [f64; 3]> {
     let apart = prop::sample::select(vec![0.0, 1e-9, 1e-6, 1e-3, 0.3]);
     (
@@ -154,7 +154,7 @@ fn stretches() -> impl Strategy<Value = [f64; 3]> {
         .prop_map(|(mean, part, apart)| std::array::from_fn(|i| mean * (1.0 + part[i] * apart[i])))
 }
 
-/// Displacements of a stretch along turned axes, then turned.
+/// Displacements of a stretch along rotated axes, which is then rotated itself.
 fn homogeneous(nodes_mm: &[DVec3], turns: &[[f64; 4]; 2], stretches: [f64; 3]) -> Vec<DVec3> {
     let [u, v] = turns.map(|turn| {
         let length = turn.iter().map(|x| x * x).sum::<f64>().sqrt();

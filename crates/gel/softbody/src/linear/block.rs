@@ -1,4 +1,5 @@
-//! Vectors of three and blocks of 3 × 3 numbers, padded with a fourth row of zeros to fit the vectors of the processor.
+//! Vectors of three and blocks of 3 × 3 numbers, padded with a fourth row of zeros to fit the
+//! vector registers of the processor.
 
 use glam::{DVec3, Mat3, Vec3};
 
@@ -9,12 +10,13 @@ use crate::wide::PlusProduct;
 #[repr(C, align(16))]
 pub(crate) struct Vector(pub(crate) [f32; 4]);
 
-/// A matrix by columns.
+/// A matrix, column by column.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(16))]
 pub(crate) struct Block(pub(crate) [[f32; 4]; 3]);
 
-/// A sum of products of blocks and vectors, in three parts, one for each column, so that no addition has to wait for another.
+/// A sum of products of blocks and vectors, in three parts, one for each column, so that no
+/// addition has to wait for another.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Sum([[f32; 4]; 3]);
 
@@ -61,7 +63,7 @@ impl Block {
         sum.total()
     }
 
-    /// The product of the transpose.
+    /// The product of the transposed block and a vector.
     #[inline(always)]
     pub(crate) fn transpose_product(&self, x: &Vector) -> Vector {
         let [a, b, c] = self.0;
@@ -98,7 +100,8 @@ impl Block {
         }
     }
 
-    /// The inverse of a symmetric positive definite matrix; for any other, that of a multiple of the unit matrix of the same size.
+    /// The inverse of a symmetric positive definite matrix; for any other matrix, that of a
+    /// multiple of the identity of the same size.
     #[inline(always)]
     pub(crate) fn inverse(&self) -> Self {
         let [[a, b, c, _], [_, d, e, _], [_, _, f, _]] = self.0;
@@ -143,7 +146,7 @@ impl Sum {
         }))
     }
 
-    /// The whole.
+    /// The sum of the three parts.
     #[inline(always)]
     pub(crate) fn total(&self) -> Vector {
         Vector(std::array::from_fn(|i| {

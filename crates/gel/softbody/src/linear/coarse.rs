@@ -1,7 +1,8 @@
-//! The system on the coarse mesh: unknown displacements and pressures, four a node.
+//! The system on the coarse mesh: unknown displacements and pressures, four for each node.
 //!
-//! `[A -B; -Bᵀ -1/D]`, factorised as `L D Lᵀ` without pivoting, in an order chosen once. `D` has exactly one negative entry for
-//! each pressure if and only if the energy is convex here (Sylvester's law of inertia).
+//! `[A -B; -Bᵀ -1/D]` is factorized as `L D Lᵀ` without pivoting, in an order that is chosen once.
+//! The diagonal factor has exactly one negative entry for each pressure if and only if the energy
+//! is convex at this state (Sylvester's law of inertia).
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
@@ -24,38 +25,39 @@ use crate::element::CoarseTangent;
 /// Numbering and sparsity of the system.
 pub(crate) struct CoarseSystem {
     free: Vec<bool>,
-    /// First unknown of each node: its displacement if it is free, then its pressure.
+    /// Index of the first unknown of each node: its displacement if the node is free, followed by
+    /// its pressure.
     first: Vec<u32>,
-    /// Lower triangle by columns.
+    /// The lower triangle, column by column.
     lower: SymbolicSparseColMat<u32>,
     symbolic: SymbolicCholesky<u32>,
     layout: Layout,
-    /// Where each entry of each tetrahedron's tangent goes.
+    /// Where each entry of each tetrahedron's tangent is added.
     blocks: Vec<TetBlocks>,
-    /// Indices of a node's diagonal entries. `[n_nodes]`
+    /// Indices of the diagonal entries of each node; `[n_nodes]`.
     diagonals: Vec<[u32; 3]>,
-    /// The matrix with nothing but `-1/D`.
+    /// The matrix with `-1/D` alone.
     base: Vec<f32>,
     corners: Vec<[u32; 4]>,
-    /// For each node, its later neighbours and where their rows begin below its own.
+    /// For each node, its later neighbours, and where their rows begin below its own.
     later: Vec<Vec<(u32, u32)>>,
 }
 
-/// Factors to solve with. Clones share their numbers.
+/// Factors of the matrix. Clones share the numbers.
 #[derive(Clone)]
 pub(crate) struct Factors {
     triangular: TriangularFactors,
     unknowns: Vec<f32>,
 }
 
-/// A matrix to factorise, and scratch memory.
+/// A matrix to be factorized, and scratch memory.
 pub(crate) struct Tangent {
     matrix: Vec<f32>,
     factors: Vec<f32>,
     scratch: MemBuffer,
 }
 
-/// The matrix has no factors.
+/// The factors of the matrix do not exist.
 #[derive(Debug)]
 pub(crate) struct Singular;
 
@@ -125,7 +127,7 @@ impl CoarseSystem {
         Ok(system)
     }
 
-    /// A matrix to be filled, with its scratch memory.
+    /// An empty matrix with its scratch memory.
     pub(crate) fn tangent(&self) -> Tangent {
         let scratch = self
             .symbolic
@@ -141,7 +143,8 @@ impl CoarseSystem {
         if self.free[node as usize] { 3 } else { 0 }
     }
 
-    /// Where the block at `offset` starts in a column of a node, less its first row: add the row within the block.
+    /// Index at which the block at `offset` starts in a column of a node, minus its first row: add
+    /// the row within the block.
     #[inline]
     fn start(&self, node: u32, column: usize, offset: u32) -> usize {
         (self.lower.col_ptr()[self.first[node as usize] as usize + column] + offset) as usize - column
@@ -174,8 +177,8 @@ impl CoarseSystem {
         }
     }
 
-    /// Adds the displacements' block of two nodes and the slopes: of the column's volume in the row's displacement, and the other way
-    /// round.
+    /// Adds the block of two nodes' displacements, and the derivatives: of the column's volume by
+    /// the row's displacement, and of the row's volume by the column's displacement.
     #[inline]
     fn add_block(
         &self,
@@ -203,7 +206,8 @@ impl CoarseSystem {
         }
     }
 
-    /// Adds the stiffness of a point that depends on neighbouring nodes with these weights; a node may come more than once.
+    /// Adds the stiffness of a point that depends on neighbouring nodes with these weights. A node
+    /// may occur more than once.
     pub(crate) fn add_at(
         &self,
         tangent: &mut Tangent,
@@ -216,7 +220,7 @@ impl CoarseSystem {
                 if a == b {
                     self.add_to_node(tangent, a, &stiffness);
                 } else if let Some((_, offset)) = self.later[b as usize].iter().find(|(node, _)| *node == a) {
-                    // Of both orders only that which the lower triangle holds.
+                    // Of both orders, only the one in the lower triangle.
                     for j in 0..self.n_displacements(b) {
                         let start = self.start(b, j, *offset);
                         for i in 0..self.n_displacements(a) {
@@ -238,7 +242,7 @@ impl CoarseSystem {
         }
     }
 
-    /// Factorises the matrix; none if the energy is not convex here.
+    /// Factorizes the matrix; `None` if the energy is not convex at this state.
     pub(crate) fn factorise(&self, tangent: &mut Tangent) -> Result<Option<Factors>, Singular> {
         let Tangent {
             matrix,
@@ -280,7 +284,8 @@ impl CoarseSystem {
         }))
     }
 
-    /// Replaces forces on the nodes by the displacements that the factors give for them; zero at bonded nodes.
+    /// Replaces forces on the nodes by the displacements that the factors give; these are zero at
+    /// bonded nodes.
     pub(crate) fn solve(&self, factors: &mut Factors, forces: &mut [Vector]) {
         // Scaled, so that small forces do not underflow.
         let largest = forces

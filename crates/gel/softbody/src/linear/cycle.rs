@@ -1,5 +1,6 @@
-//! The two-level cycle that preconditions the system: a Gauss–Seidel sweep for errors that vary from node to node, the factors of the
-//! system on the coarse mesh for smooth errors, and a backward sweep, which makes the whole symmetric.
+//! The two-level cycle that preconditions the system: a Gauss–Seidel sweep for errors that vary
+//! from node to node, the factors of the system on the coarse mesh for smooth errors, and a
+//! backward sweep, which makes the cycle symmetric.
 
 use super::block::Vector;
 use super::coarse::{CoarseSystem, Factors};
@@ -18,7 +19,7 @@ pub(crate) struct TwoLevel<'a> {
     pub(crate) matrix: &'a Matrix,
     pub(crate) coarse: &'a CoarseSystem,
     pub(crate) factors: &'a mut Factors,
-    /// The coarse nodes that each fine node lies midway between.
+    /// The two coarse nodes that each fine node is midway between.
     pub(crate) ends: &'a [[u32; 2]],
     pub(crate) cycle: &'a mut Cycle,
 }
@@ -42,7 +43,8 @@ impl Cycle {
 }
 
 impl TwoLevel<'_> {
-    /// Takes a step of conjugate gradients, and preconditions the residual after it. Also computes `√D Bᵀ z`.
+    /// Does a step of conjugate gradients, and preconditions the residual after it. Also computes
+    /// `√D Bᵀ z`.
     pub(crate) fn run(&mut self, step: Step, vectors: &mut Vectors, volumes: &mut [f32]) -> Products {
         let Cycle {
             coarse,

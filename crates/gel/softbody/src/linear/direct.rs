@@ -1,6 +1,8 @@
-//! Factors of the whole system in double precision, computed anew for every direction: the usual method, for comparison.
+//! Factors of the whole system in double precision, computed again for every direction: the usual
+//! method, for comparison.
 //!
-//! `[A B√D; √D Bᵀ -1]`, displacements and scaled pressures, as `L D Lᵀ` in an order of minimum degree.
+//! `[A B√D; √D Bᵀ -1]`, for displacements and scaled pressures, as `L D Lᵀ` in a minimum-degree
+//! order.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
@@ -22,7 +24,7 @@ pub(crate) struct DirectSystem {
     sources: Vec<Source>,
 }
 
-/// Where an entry comes from: the index of a block or slope, and the entry's column and row in it.
+/// Where an entry comes from: index of a block or derivative, and the column and row in it.
 #[derive(Clone, Copy)]
 enum Source {
     Own { node: u32, entry: [u8; 2] },
@@ -92,7 +94,7 @@ impl DirectSystem {
         })
     }
 
-    /// Solves for displacements, and `√D Bᵀ` times them; false if the factors do not exist.
+    /// Solves for displacements, and `√D Bᵀ` times them; returns false if the factors do not exist.
     pub(crate) fn solve(
         &self,
         matrix: &Matrix,

@@ -1,15 +1,18 @@
-//! The order in which nodes are eliminated: nested dissection by coordinates (George, SIAM J. Numer. Anal. 10, 1973).
+//! The order in which nodes are eliminated: nested dissection by coordinates (George, SIAM J.
+//! Numer. Anal. 10, 1973).
 //!
-//! A set of nodes is cut by a plane; the nodes on one side that touch the other side separate the two halves and are eliminated
-//! after both. On bodies of gel it leaves less fill than minimum degree, and its separators make large dense blocks.
+//! A set of nodes is cut by a plane. The nodes on one side that touch the other side separate the
+//! two halves, and are eliminated after both. On bodies of gel this leaves less fill than minimum
+//! degree, and its separators form large dense blocks.
 
 use glam::DVec3;
 
 /// Sets of this size are not cut further.
 const LEAF: usize = 24;
 
-/// Nodes in the order of elimination, and how many the two halves have that come first and do not touch each other. `neighbours[n]` are the
-/// nodes that share a tetrahedron with node `n`.
+/// Nodes in the order of elimination, and the numbers of nodes in the two halves that come first
+/// and do not touch each other. `neighbours[n]` are the nodes that share a tetrahedron with node
+/// `n`.
 pub(crate) fn elimination_order(positions_mm: &[DVec3], neighbours: &[Vec<u32>]) -> (Vec<u32>, [usize; 2]) {
     let mut order = Vec::with_capacity(positions_mm.len());
     let mut side = vec![0; positions_mm.len()];
@@ -51,7 +54,8 @@ fn dissect(
     }
 }
 
-/// Cuts a set in two halves along an axis: those below, those above, and those below that touch the ones above.
+/// Cuts a set in two along an axis: the nodes below, those above, and those below that touch the
+/// ones above.
 fn cut(
     nodes: &[u32],
     axis: usize,
@@ -63,7 +67,7 @@ fn cut(
     let along = |node: u32| positions_mm[node as usize][axis];
     let mut sorted = nodes.to_vec();
     sorted.sort_by(|&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
-    // Move the cut off the middle of a plane of nodes, to whichever end of it is nearer.
+    // Moves the cut from the middle of a plane of nodes to the nearer end of the plane.
     let middle = along(sorted[sorted.len() / 2]);
     let span = along(sorted[sorted.len() - 1]) - along(sorted[0]);
     let first = sorted.partition_point(|&node| along(node) < middle - 1e-6 * span);

@@ -1,7 +1,8 @@
 //! The triangular factors of the coarse system, and solving with them, which every iteration does.
 //!
-//! Their entries are kept in sixteen bits, because the speed of a solve is limited by reading memory. They are in two halves that do not
-//! depend on each other, and the part between the halves.
+//! Their entries are stored in sixteen bits, because the speed of a solve is limited by reading
+//! memory. They consist of two halves that do not depend on each other, and the part between the
+//! halves.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,7 +13,7 @@ use pulp::NullaryFnOnce;
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::PlusProduct;
 
-/// Entries that are worked on at once. Columns are padded with zeros to a multiple.
+/// Number of entries that are processed at once. Columns are padded with zeros to a multiple of it.
 const LANES: usize = 16;
 
 /// Largest entry, in units of its column's scale.
@@ -23,9 +24,9 @@ pub(crate) struct Layout {
     supernodes: Vec<Supernode>,
     /// Rows below the supernodes, ascending.
     rows: Vec<u32>,
-    /// Supernodes of the first half, of the second, and between.
+    /// Supernodes of the first half, of the second half, and between the halves.
     parts: [Range<usize>; 3],
-    /// First column of the second half, and of what lies between.
+    /// First column of the second half, and of the part between the halves.
     starts: [usize; 2],
     n_columns: usize,
     n_entries: usize,
@@ -36,25 +37,26 @@ pub(crate) struct Layout {
 struct Supernode {
     columns: Range<usize>,
     rows: Range<usize>,
-    /// How many of the rows are not between the halves.
+    /// Number of rows that are not between the halves.
     n_own_rows: usize,
     first_entry: usize,
 }
 
-/// The entries, shared by all that solve with them, and scratch memory.
+/// The entries, which all solves with them share, and scratch memory.
 #[derive(Clone)]
 pub(crate) struct TriangularFactors {
     numbers: Arc<Numbers>,
-    /// Scratch memory of each half: a supernode's rows, and what the half adds between the halves.
+    /// Scratch memory of each half: the rows of a supernode, and what the half adds to the part
+    /// between the halves.
     local: [Vec<f32>; 2],
     between: [Vec<f32>; 2],
 }
 
 struct Numbers {
     entries: Vec<i16>,
-    /// The factor of the entries of a column. `[n_columns]`
+    /// The factor of the entries of each column; `[n_columns]`.
     scales: Vec<f32>,
-    /// Inverse of `D`. `[n_columns]`
+    /// Inverse of `D`; `[n_columns]`.
     inverse: Vec<f32>,
 }
 
@@ -63,14 +65,14 @@ impl Supernode {
         self.columns.len() + self.rows.len()
     }
 
-    /// Entries of a column with this many rows below its diagonal, padding included.
+    /// Number of entries of a column with this many rows below its diagonal, including padding.
     fn padded(n_below: usize) -> usize {
         n_below.next_multiple_of(LANES)
     }
 }
 
 impl Layout {
-    /// `halves` are how many columns the first half has, and the second.
+    /// `halves` are the numbers of columns of the first and of the second half.
     pub(crate) fn new(symbolic: &SymbolicSupernodalCholesky<u32>, halves: [usize; 2]) -> Self {
         let n_supernodes = symbolic.n_supernodes();
         let mut supernodes = Vec::with_capacity(n_supernodes);
@@ -121,7 +123,7 @@ impl Layout {
         }
     }
 
-    /// Of factors: of each supernode a matrix by columns, `D` on its diagonal.
+    /// From factors that contain, for each supernode, a matrix by columns with `D` on its diagonal.
     pub(crate) fn factors(&self, factors: &[f32]) -> TriangularFactors {
         let local = || vec![0.0; self.most_rows + 2 * LANES];
         let between = || vec![0.0; self.n_columns - self.starts[1]];
@@ -227,7 +229,8 @@ impl TriangularFactors {
     }
 }
 
-/// A solve with the supernodes of one part, whose columns begin at `start`: with `L`, or with `D Lᵀ`.
+/// A solve with the supernodes of one part, whose columns begin at `start`: with `L`, or with
+/// `D Lᵀ`.
 struct Solve<'a> {
     layout: &'a Layout,
     numbers: &'a Numbers,
@@ -346,7 +349,8 @@ impl Solve<'_> {
     }
 }
 
-/// The sum of all lanes. Not inlined: the compiler would otherwise add pairs of lanes inside the loop, which is slower.
+/// The sum of all lanes. It is not inlined, because the compiler would otherwise add pairs of lanes
+/// inside of the loop, which is slower.
 #[inline(never)]
 fn total(lanes: &[f32; LANES]) -> f32 {
     let [first, second] = [0, LANES / 2].map(|start| &lanes[start..][..LANES / 2]);

@@ -1,4 +1,4 @@
-//! Newton's linear system by conjugate gradients.
+//! Solves Newton's linear system by conjugate gradients.
 
 use super::block::Vector;
 use super::cycle::TwoLevel;
@@ -8,7 +8,7 @@ use super::sweep::{Step, Vectors};
 /// Scratch memory of the iteration.
 pub(crate) struct ConjugateGradients {
     pub(crate) vectors: Vectors,
-    /// `D Bᵀ` times the solution: the decrease of the pressures, MPa. `[n_coarse]`
+    /// `D Bᵀ` times the solution, which is the decrease of the pressures, MPa; `[n_coarse]`.
     pub(crate) solution_mpa: Vec<f32>,
     /// `√D Bᵀ` times the direction, and times the preconditioned residual.
     direction_volumes: Vec<f32>,
@@ -19,9 +19,10 @@ pub(crate) struct ConjugateGradients {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     Converged,
-    /// Not within the iterations allowed.
+    /// It did not converge within the allowed iterations.
     Slow,
-    /// The energy is concave along a direction; along the solution found before it, the energy still falls.
+    /// The energy is concave along a direction. Along the solution that was found before it, the
+    /// energy still falls.
     NotConvex,
 }
 
@@ -36,7 +37,8 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves until an iteration adds less than the square of `tolerance` to the decrease of energy so far. Also returns the number of iterations.
+    /// Solves until an iteration adds less than the square of `tolerance` to the decrease of energy
+    /// so far. Also returns the number of iterations.
     pub(crate) fn solve(
         &mut self,
         system: &mut TwoLevel,
@@ -84,7 +86,8 @@ impl ConjugateGradients {
         (Outcome::Slow, max_iterations)
     }
 
-    /// Takes a solution, and its `√D Bᵀ`, from another method; false if that finds none along which the energy falls.
+    /// Takes a solution and its `√D Bᵀ` from another method; returns false if that method finds
+    /// none along which the energy falls.
     pub(crate) fn take(
         &mut self,
         pattern: &Pattern,

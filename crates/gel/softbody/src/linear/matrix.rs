@@ -1,4 +1,5 @@
-//! The system on the fine mesh: the lower triangle of `A` with its diagonal, and `B √D`, by rows.
+//! The system on the fine mesh: the lower triangle of `A` with its diagonal, and `B √D`, row by
+//! row.
 
 use std::ops::Range;
 
@@ -11,41 +12,41 @@ use crate::element::{Elements, NODES, NodeBlock, NodeSlopes, Sink, Table};
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::LANES;
 
-/// The index for a pair of nodes of which one is bonded: its block is not stored.
+/// The index for a pair of nodes one of which is bonded: its block is not stored.
 const NONE: u32 = u32::MAX;
 
 /// The sparsity of the system: the neighbours of each free node.
 pub(crate) struct Pattern {
     pub(crate) halves: Halves,
-    /// Blocks of each row below the diagonal, ascending. `[n_free + 1]`
+    /// Start of the blocks of each row below the diagonal, ascending; `[n_free + 1]`.
     rows: Vec<u32>,
     pub(super) columns: Vec<u32>,
-    /// Coarse nodes whose volume each row's node changes. `[n_free + 1]`
+    /// Start of the coarse nodes whose volume changes with each row's node; `[n_free + 1]`.
     slope_rows: Vec<u32>,
     pub(super) slope_columns: Vec<u32>,
-    /// Square roots of the bulk modulus over the volume of each coarse node, `√D`.
+    /// Square roots of the bulk modulus divided by the volume of each coarse node, `√D`.
     pub(super) root_stiffness: Vec<f32>,
-    /// Where the blocks of each slot's pairs are added: the row for a node with itself, else twice the index of the block, plus one if transposed.
-    /// `[n_slots][most_pairs]`, flat.
+    /// Where the blocks of each slot's pairs are added: for a node with itself the row, otherwise
+    /// twice the index of the block, plus one if transposed. `[n_slots][most_pairs]`, flat.
     block_indices: Vec<u32>,
     most_pairs: usize,
-    /// Where the slopes of each slot's nodes and corners are added.
+    /// Where the derivatives of each slot's nodes and corners are added.
     slope_indices: Vec<[[u32; 4]; NODES]>,
 }
 
-/// The numbers of the system.
+/// The values of the system.
 pub(crate) struct Matrix {
     diagonal: Vec<Block>,
     pub(super) blocks: Vec<Block>,
     /// Rows of `B √D`.
     pub(super) slopes: Vec<Vector>,
-    /// Stiffness of contact and damping, to be added to the diagonal. `[n_free]`
+    /// Stiffness of contact and damping, which is added to the diagonal; `[n_free]`.
     pub(crate) extra: Vec<Block>,
-    /// Blocks to which contact has added, and their values before.
+    /// Blocks that contact has added to, and their previous values.
     covered: Vec<(u32, Block)>,
-    /// The whole diagonal of `A`. `[n_free]`
+    /// The complete diagonal of `A`; `[n_free]`.
     pub(super) own: Vec<Block>,
-    /// Inverse of the diagonal of `H`. `[n_free]`
+    /// Inverse of the diagonal of `H`; `[n_free]`.
     pub(super) inverse: Vec<Block>,
 }
 
@@ -60,7 +61,7 @@ pub(crate) struct FineSink<'a> {
     slopes: &'a mut [Vector],
 }
 
-/// Rows of sorted columns, each once.
+/// Rows of sorted columns without repetition.
 fn csr(rows: Vec<Vec<u32>>) -> (Vec<u32>, Vec<u32>) {
     let (mut starts, mut columns) = (vec![0], Vec::new());
     for mut row in rows {
@@ -79,7 +80,8 @@ fn find(rows: &[u32], columns: &[u32], row: u32, column: u32) -> u32 {
 }
 
 impl Pattern {
-    /// `parents` are the ten nodes of each coarse tetrahedron, corners first, `corners` its coarse nodes.
+    /// `parents` are the ten nodes of each coarse tetrahedron, corners first; `corners` are its
+    /// coarse nodes.
     pub(crate) fn new(
         elements: &Elements,
         parents: &[[u32; NODES]],
@@ -88,7 +90,7 @@ impl Pattern {
         volume_stiffness: &[f64],
     ) -> Self {
         let is_free = |node: u32| (node as usize) < halves.free;
-        // Free pairs, the later node first.
+        // Pairs of free nodes, later node first.
         let pair_of = |nodes: &[u32; NODES], [a, b]: [u8; 2]| {
             let (a, b) = (nodes[a as usize], nodes[b as usize]);
             (is_free(a) && is_free(b)).then_some((a.max(b), a.min(b), a < b))
@@ -221,21 +223,22 @@ impl Matrix {
         }
     }
 
-    /// Scales the slopes that were added up: from `B` to `B √D`.
+    /// Scales the summed derivatives from `B` to `B √D`.
     pub(crate) fn scale_slopes(&mut self, pattern: &Pattern) {
         for (slope, column) in self.slopes.iter_mut().zip(&pattern.slope_columns) {
             *slope = Vector::ZERO.plus_scaled(*slope, pattern.root_stiffness[*column as usize]);
         }
     }
 
-    /// Restores the blocks between nodes to which contact has added.
+    /// Restores the blocks between nodes that contact has added to.
     pub(crate) fn take_back(&mut self) {
         for (index, block) in self.covered.drain(..).rev() {
             self.blocks[index as usize] = block;
         }
     }
 
-    /// Adds the stiffness of a point that depends on neighbouring nodes. The matrix has to be completed afterwards.
+    /// Adds the stiffness of a point that depends on neighbouring nodes. The matrix has to be
+    /// completed afterwards.
     pub(crate) fn add_at(
         &mut self,
         pattern: &Pattern,
@@ -250,13 +253,13 @@ impl Matrix {
                 let index = find(&pattern.rows, &pattern.columns, node.max(other), node.min(other));
                 let block = &mut self.blocks[index as usize];
                 self.covered.push((index, *block));
-                // Symmetric, whichever comes first.
+                // The stiffness is symmetric, so the order does not matter.
                 block.add(&Block::from_mat3(&(*stiffness * (part * other_part as f32))));
             }
         }
     }
 
-    /// Completes the diagonal with the extra stiffness as it is now.
+    /// Completes the diagonal with the present extra stiffness.
     pub(crate) fn complete(&mut self, pattern: &Pattern) {
         let half = pattern.halves.free / 2;
         let (diagonal, slopes, extra) = (&self.diagonal, &self.slopes, &self.extra);
@@ -292,7 +295,7 @@ impl Sink for FineSink<'_> {
     }
 }
 
-/// Eight tetrahedra to add.
+/// Eight tetrahedra whose tangents are added.
 struct Addition<'a, 'b> {
     sink: &'a mut FineSink<'b>,
     slot: usize,

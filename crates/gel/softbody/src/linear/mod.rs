@@ -1,7 +1,9 @@
-//! Newton's linear system, and conjugate gradients with a two-level preconditioner that solve it.
+//! Newton's linear system, which is solved by conjugate gradients with a two-level preconditioner.
 //!
-//! With the pressures eliminated the system is `H = A + B D Bᵀ`: `A` in blocks of 3 × 3 between neighbouring nodes, `B` the slope of the
-//! coarse nodes' volumes, `D` their bulk modulus over volume. All of it is in single precision: a direction needs no more.
+//! With the pressures eliminated, the system is `H = A + B D Bᵀ`: `A` in blocks of 3 × 3 between
+//! neighbouring nodes, `B` the derivative of the coarse nodes' volumes, `D` their bulk modulus
+//! divided by their volume. All of it is in single precision, which is accurate enough for a
+//! direction.
 
 pub(crate) mod block;
 pub(crate) mod coarse;

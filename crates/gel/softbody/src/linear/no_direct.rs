@@ -1,4 +1,5 @@
-//! WebAssembly has no factors of the whole system: they are for comparison alone, and would be a third of what a page loads.
+//! WebAssembly has no factors of the whole system: they are for comparison only, and would be a
+//! third of the code that a page loads.
 
 use std::convert::Infallible;
 
@@ -6,14 +7,14 @@ use super::block::Vector;
 use super::matrix::{Matrix, Pattern};
 use crate::SoftBodyError;
 
-/// The system of `direct`, which is not there.
+/// The system of `direct`, which does not exist here.
 pub(crate) struct DirectSystem(Infallible);
 
 impl DirectSystem {
     pub(crate) fn new(pattern: &Pattern) -> Result<Self, SoftBodyError> {
         Err(SoftBodyError::Analysis {
             n_unknowns: 3 * pattern.halves.free + pattern.n_coarse(),
-            reason: "WebAssembly has the two-level solver alone".to_owned(),
+            reason: "WebAssembly has only the two-level solver".to_owned(),
         })
     }
 

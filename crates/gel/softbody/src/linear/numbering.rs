@@ -1,28 +1,29 @@
 //! The order of the unknowns: two halves that do not touch each other, and the nodes between them.
 //!
-//! The halves can be worked on at the same time. A coarse node belongs to the half on its side of a plane across the body's longest
-//! axis. A fine node belongs to a half if all the coarse tetrahedra around it have their corners there, else it lies between.
+//! The halves can be worked on at the same time. A coarse node belongs to the half on its side of a
+//! plane across the longest axis of the body. A fine node belongs to a half if all coarse
+//! tetrahedra around it have their corners there; otherwise it is between the halves.
 
 use glam::DVec3;
 use twintac_mesh::{NodeSets, Refinement, TetMesh};
 
 use crate::element::Side;
 
-/// The number of nodes in the halves.
+/// Numbers of nodes in the halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Halves {
-    /// Coarse nodes of the first half.
+    /// Number of coarse nodes of the first half.
     pub(crate) coarse: usize,
-    /// Free fine nodes of the first half.
+    /// Number of free fine nodes of the first half.
     pub(crate) first: usize,
-    /// Free fine nodes of both halves.
+    /// Number of free fine nodes of both halves.
     pub(crate) both: usize,
-    /// Free fine nodes.
+    /// Number of free fine nodes.
     pub(crate) free: usize,
 }
 
 impl Halves {
-    /// Where an element with these nodes lies.
+    /// The half that an element with these nodes is in.
     pub(crate) fn side(&self, nodes: &[u32]) -> Side {
         let mut free = nodes
             .iter()
@@ -39,22 +40,24 @@ impl Halves {
     }
 }
 
-/// A mesh, its refinement, and both numbered by halves.
+/// A mesh and its refinement, both numbered by halves.
 pub(crate) struct Numbered {
-    /// The fine mesh: free nodes of the first half, of the second, between them, then bonded nodes.
+    /// The fine mesh: free nodes of the first half, of the second half, and between them, followed
+    /// by bonded nodes.
     pub(crate) mesh: TetMesh,
-    /// Coarse nodes at rest, mm.
+    /// Positions of the coarse nodes in the undeformed state, mm.
     pub(crate) coarse_nodes_mm: Vec<DVec3>,
     /// Whether a coarse node is bonded.
     pub(crate) coarse_bonded: Vec<bool>,
     /// Corners of the coarse tetrahedra.
     pub(crate) coarse_tets: Vec<[u32; 4]>,
-    /// The two coarse nodes that each fine node lies midway between; the same twice for a coarse node.
+    /// The two coarse nodes that each fine node is midway between; twice the same for a coarse
+    /// node.
     pub(crate) ends: Vec<[u32; 2]>,
     pub(crate) halves: Halves,
 }
 
-/// Numbers a mesh that was checked.
+/// Numbers a mesh that has been checked.
 pub(crate) fn number(mesh: &TetMesh) -> Numbered {
     let coarse_order = by_sides(&mesh.nodes_mm);
     let n_first_coarse = coarse_order.1;
@@ -97,7 +100,7 @@ pub(crate) fn number(mesh: &TetMesh) -> Numbered {
     }
 }
 
-/// A mesh with its nodes in another order: `new` has the new index of each node.
+/// A mesh with its nodes in another order; `new` has the new index of each node.
 fn renumbered(mesh: &TetMesh, order: &[u32], new: &[u32]) -> TetMesh {
     let renumber = |nodes: &[u32]| {
         let mut nodes: Vec<u32> = nodes.iter().map(|&node| new[node as usize]).collect();
@@ -145,7 +148,7 @@ fn classes(refinement: &Refinement, n_first_coarse: usize) -> Vec<u8> {
     class
 }
 
-/// The fine nodes by class, and in each class by position.
+/// The fine nodes by class, and by position within each class.
 fn by_classes(class: &[u8], nodes_mm: &[DVec3]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..nodes_mm.len() as u32).collect();
     order.sort_by_key(|&node| {
@@ -161,7 +164,8 @@ fn by_classes(class: &[u8], nodes_mm: &[DVec3]) -> Vec<u32> {
     order
 }
 
-/// The nodes, sorted by their side of a plane across the longest axis, and how many are on the first side.
+/// The nodes, sorted by their side of a plane across the longest axis, and the number of nodes on
+/// the first side.
 fn by_sides(nodes_mm: &[DVec3]) -> (Vec<u32>, usize) {
     let bound = |f: fn(DVec3, DVec3) -> DVec3| nodes_mm.iter().copied().reduce(f).unwrap_or_default();
     let size_mm = bound(DVec3::max) - bound(DVec3::min);
@@ -174,7 +178,7 @@ fn by_sides(nodes_mm: &[DVec3]) -> (Vec<u32>, usize) {
     };
     let mut along: Vec<f64> = nodes_mm.iter().map(|node| node[axis]).collect();
     along.sort_by(f64::total_cmp);
-    // Just below the middle, so that no plane of nodes is cut in itself.
+    // Slightly below the middle, so that no plane of nodes is divided.
     let cut_mm = along[along.len() / 2] - 1e-9 * size_mm[axis];
     let is_low = |node: u32| nodes_mm[node as usize][axis] < cut_mm;
     let mut order: Vec<u32> = (0..nodes_mm.len() as u32).collect();

@@ -1,15 +1,15 @@
 //! Numbering and sparsity of the coarse system.
 
-/// For each pair of corners, at `a (a + 1) / 2 + b`: whether the first is the later to be eliminated, and where its rows begin in the
-/// other's columns.
+/// For each pair of corners, at `a (a + 1) / 2 + b`: whether the first is eliminated later, and
+/// where its rows begin in the columns of the other.
 pub(super) type TetBlocks = [(bool, u32); 10];
 
-/// Unknowns of a node: its pressure, and the displacement of a free node.
+/// Number of unknowns of a node: its pressure, and for a free node its displacement.
 pub(super) fn unknowns(free: &[bool], node: u32) -> u32 {
     if free[node as usize] { 4 } else { 1 }
 }
 
-/// Nodes that share a tetrahedron with each node, itself included, ascending.
+/// Nodes that share a tetrahedron with each node, including itself, ascending.
 pub(super) fn neighbours(n_nodes: usize, corners: &[[u32; 4]]) -> Vec<Vec<u32>> {
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); n_nodes];
     for corners in corners {
@@ -24,7 +24,7 @@ pub(super) fn neighbours(n_nodes: usize, corners: &[[u32; 4]]) -> Vec<Vec<u32>> 
     neighbours
 }
 
-/// Places of the nodes, and of their unknowns, in the order of elimination.
+/// Positions of the nodes, and of their unknowns, in the order of elimination.
 pub(super) struct Numbering {
     pub(super) rank: Vec<u32>,
     pub(super) first: Vec<u32>,
@@ -48,7 +48,7 @@ impl Numbering {
     }
 }
 
-/// Where the lower triangle has entries, by columns.
+/// Where the lower triangle has entries, column by column.
 pub(super) struct Sparsity {
     pub(super) columns: Vec<u32>,
     pub(super) rows: Vec<u32>,
@@ -94,7 +94,7 @@ impl Sparsity {
     }
 }
 
-/// Where the blocks of a tetrahedron go.
+/// Where the blocks of a tetrahedron are added.
 pub(super) fn tet_blocks(corners: &[u32; 4], rank: &[u32], later: &[Vec<(u32, u32)>]) -> TetBlocks {
     let offset = |row: u32, column: u32| {
         let blocks = &later[column as usize];

@@ -1,9 +1,12 @@
-//! Sweeps of block Gauss–Seidel on `H = L + Δ + Lᵀ`, and the step of conjugate gradients that is done along with them.
+//! Sweeps of block Gauss–Seidel on `H = L + Δ + Lᵀ`, and the step of conjugate gradients that is
+//! done along with them.
 //!
-//! A backward sweep that ends in `z` leaves the residual `-L c`, `c` the change that it made to each row: at its turn a row is solved, and
-//! only the rows before it change after that. So `H z = r + L c` can be added up by the next forward sweep, which reads `L` anyway, and
-//! `zᵀ H z = zᵀ r + cᵀ Lᵀ z` is known before: an iteration reads the matrix twice, not three times (after Eisenstat, SIAM J. Sci. Stat.
-//! Comput. 2, 1981, who had no coarse system between the sweeps).
+//! A backward sweep that ends in `z` leaves the residual `-L c`, where `c` is the change that it
+//! made to each row: at its turn a row is solved, and only the rows before it change after that.
+//! Therefore `H z = r + L c` can be summed by the next forward sweep, which reads `L` anyway, and
+//! `zᵀ H z = zᵀ r + cᵀ Lᵀ z` is known before. An iteration thus reads the matrix twice, not three
+//! times (after Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1981, who had no coarse system between the
+//! sweeps).
 
 use std::ops::Range;
 
@@ -13,30 +16,32 @@ use super::block::{Sum, Vector};
 use super::matrix::{Matrix, Pattern};
 use crate::parallel::{dispatch, join_halves};
 
-/// Vectors of the iteration. `[n_free]`
+/// Vectors of the iteration; `[n_free]`.
 pub(crate) struct Vectors {
     /// The residual of the solution so far.
     pub(crate) residual: Vec<Vector>,
     /// The solution so far.
     pub(crate) solution: Vec<Vector>,
-    /// The direction along which it moved last, and its product with `H`.
+    /// The last direction along which the solution moved, and its product with `H`.
     pub(crate) direction: Vec<Vector>,
     product: Vec<Vector>,
     /// The preconditioned residual, and its change by the backward sweep.
     pub(crate) preconditioned: Vec<Vector>,
     change: Vec<Vector>,
-    /// After a forward sweep the defect, after a backward one the part of `A z` above the diagonal.
+    /// After a forward sweep the defect; after a backward sweep the part of `A z` above the
+    /// diagonal.
     pub(crate) defect: Vec<Vector>,
 }
 
-/// A step of conjugate gradients: its length, and the part of the old direction in the new one.
+/// A step of conjugate gradients: its length, and the share of the old direction in the new one.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Step {
     pub(crate) length: f32,
     pub(crate) ratio: f32,
 }
 
-/// `zᵀ r`, and the parts of `zᵀ H z - zᵀ r` from `A` and, to be subtracted, from the volumes.
+/// `zᵀ r`, and the parts of `zᵀ H z - zᵀ r`: that of `A`, and that of the volumes, which is
+/// subtracted.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Squares {
     pub(crate) residual: f64,
@@ -58,7 +63,7 @@ impl Vectors {
         }
     }
 
-    /// Starts anew, the residual given.
+    /// Starts again with the given residual.
     pub(crate) fn restart(&mut self) {
         for vector in [
             &mut self.solution,
@@ -71,7 +76,7 @@ impl Vectors {
         }
     }
 
-    /// Takes a step, updating the direction and the solution only.
+    /// Does a step that updates the direction and the solution only.
     pub(crate) fn finish(&mut self, step: Step) {
         let rows = self.solution.iter_mut().zip(&mut self.direction);
         for ((solution, direction), z) in rows.zip(&self.preconditioned) {
@@ -97,7 +102,7 @@ impl Vectors {
     }
 }
 
-/// Rows of all vectors, and volumes, from the first ones on.
+/// Rows of all vectors, and volumes, from the indices `first` and `first_volume` on.
 struct Part<'a> {
     first: usize,
     residual: &'a mut [Vector],
@@ -157,8 +162,9 @@ impl<'a> Part<'a> {
 }
 
 impl Matrix {
-    /// Takes a step of conjugate gradients, and sweeps from zero for the residual after it. Computes `√D Bᵀ x`, and the defect without the volumes'
-    /// part. `moved_volumes` is scratch memory.
+    /// Does a step of conjugate gradients, and sweeps from zero for the residual after it. Computes
+    /// `√D Bᵀ x`, and the defect without the part of the volumes. `moved_volumes` is scratch
+    /// memory.
     pub(crate) fn sweep_forward(
         &self,
         pattern: &Pattern,
@@ -333,7 +339,7 @@ impl NullaryFnOnce for Backward<'_> {
             }
             squares.residual += f64::from(part.residual[here].dot(&x));
             squares.above += f64::from(change.dot(&above));
-            // `B p` once the row has changed: by `Δ` less the block of `A` more.
+            // `B p` after the row has changed: larger by `Δ` minus the block of `A`.
             let own = matrix.own[row].times(&change);
             let squeezed = squeezed.plus_scaled(left, 1.0).plus_scaled(own, -1.0);
             squares.volumes += f64::from(squeezed.dot(&x));

@@ -13,7 +13,7 @@ use crate::linear::coarse::Factors;
 use crate::relaxation::History;
 use crate::wide::LANES;
 
-/// Factors of a body at rest, with which all its presses start.
+/// Factors of a body at rest, with which all of its presses start.
 pub(crate) fn rest_factors(body: &SoftBody) -> Option<Factors> {
     let history = History::new(body.elements.n_points(), &body.material.prony);
     let step = Step {
@@ -32,7 +32,8 @@ pub(crate) fn rest_factors(body: &SoftBody) -> Option<Factors> {
 }
 
 impl Buffers {
-    /// Factorises the coarse tangent: the true one if it is convex, else ever stiffer.
+    /// Factorizes the coarse tangent: the true one if it is convex, otherwise one that is made
+    /// stiffer until it is.
     pub(super) fn factorise(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
         let started = Instant::now();
         self.factors = None;
@@ -82,7 +83,7 @@ impl Buffers {
         elements.tangents_between(&step.response, u, &self.corners, &mut sink(second, between));
     }
 
-    /// Assembles the elements' part of the fine matrix.
+    /// Assembles the part of the elements in the fine matrix.
     pub(crate) fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
         body.corner_pressures(&self.foreseen_mpa, &mut self.corners);
         let (elements, u) = (&body.elements, &*x.displacements_mm);
@@ -94,7 +95,7 @@ impl Buffers {
         self.matrix.scale_slopes(&body.pattern);
     }
 
-    /// The product of the matrix with a vector at the free nodes.
+    /// The product of the matrix and a vector at the free nodes.
     pub(crate) fn product(&self, body: &SoftBody, x: &[Vector]) -> Vec<Vector> {
         self.matrix.product(&body.pattern, x)
     }
@@ -113,7 +114,7 @@ impl Buffers {
     }
 }
 
-/// Hands out the stiffness of all contacts in touch, and of friction, N/mm.
+/// Calls `add` with the stiffness of every point in contact, and with that of friction, N/mm.
 fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(&ContactPoint, &DMat3)) {
     for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
         for (point, touch) in contact.each(&body.boundary) {

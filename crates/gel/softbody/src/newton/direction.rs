@@ -9,14 +9,16 @@ use crate::linear::cycle::TwoLevel;
 use crate::linear::direct::DirectSystem;
 use crate::linear::krylov::Outcome;
 
-/// Conjugate gradient iterations that cost less than new factors.
+/// Number of conjugate gradient iterations that still cost less than new factors.
 const MAX_STALE_ITERATIONS: u32 = 12;
 
-/// Conjugate gradient iterations with new factors: a few make up for single precision.
+/// Largest number of conjugate gradient iterations with new factors: a few make up for single
+/// precision.
 const MAX_FRESH_ITERATIONS: u32 = 50;
 
 impl Buffers {
-    /// Newton's direction at the unknowns; where the energy is not convex, that of a stiffened, convex one.
+    /// Newton's direction at the unknowns. Where the energy is not convex, it is that of a
+    /// stiffened, convex energy.
     pub(crate) fn find_direction(
         &mut self,
         body: &SoftBody,
@@ -25,7 +27,8 @@ impl Buffers {
         forcing: f64,
     ) -> Result<(), Failure> {
         match self.try_direction(body, step, x, forcing) {
-            // Far from equilibrium, the foreseen pressures can make the tangent indefinite by more than stiffening corrects.
+            // Far from equilibrium, the predicted pressures can make the tangent so indefinite that
+            // stiffening does not correct it.
             Err(Failure::Singular) if self.foreseen_mpa.iter().any(|mpa| *mpa != 0.0) => {
                 self.foreseen_mpa.fill(0.0);
                 self.has_matrix = false;
@@ -90,7 +93,8 @@ impl Buffers {
         Ok(())
     }
 
-    /// The same, by factors of the whole system; false where it is not convex.
+    /// Like [`Self::try_direction`], by factors of the whole system; returns false where the energy
+    /// is not convex.
     fn find_direction_directly(&mut self, body: &SoftBody, direct: &DirectSystem) -> bool {
         let started = Instant::now();
         self.take_residual();

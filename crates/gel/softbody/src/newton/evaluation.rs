@@ -9,7 +9,8 @@ use crate::clock::Instant;
 use crate::parallel::join_halves;
 
 impl Buffers {
-    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material is not defined for that.
+    /// Computes pressures, contact, the energy and its gradient; `None` if a tetrahedron is
+    /// inverted and the material is not defined for that.
     pub(crate) fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
         let started = Instant::now();
         let mut evaluation = Evaluation {
@@ -89,7 +90,7 @@ impl Buffers {
     }
 }
 
-/// Whether the energy is defined at this smallest volume ratio.
+/// Whether the energy is defined for this smallest volume ratio.
 fn is_admissible(body: &SoftBody, smallest_volume_ratio: f64) -> bool {
     smallest_volume_ratio > 0.0
         || (body.material.model.properties().bears_inversion && !smallest_volume_ratio.is_nan())

@@ -1,4 +1,5 @@
-//! The iteration: directions and steps along them, until the forces are balanced and no node is too deep inside a shape.
+//! The iteration: directions, and steps along them, until the forces are balanced and no node is
+//! too deep inside of a shape.
 
 use super::step::{Equilibrium, Failure, Passed, Step, Unknowns};
 use super::workspace::Buffers;
@@ -6,24 +7,27 @@ use crate::body::SoftBody;
 use crate::clock::Instant;
 use crate::contact::Contact;
 
-/// Accuracy of a direction: iterations end when one adds less than the square of this to the decrease of energy.
+/// Accuracy of a direction: conjugate gradients end when an iteration adds less than the square of
+/// this to the decrease of energy.
 const FORCING: f64 = 0.3;
 
-/// Part of the tolerance below which the start of a step is accepted as its solution.
+/// Fraction of the tolerance below which the start of a step is accepted as its solution.
 const UNTOUCHED: f64 = 0.1;
 
-/// A step after which more than this part of the unbalanced forces is left needs a new matrix.
+/// If more than this fraction of the unbalanced forces remains after a step, a new matrix is
+/// needed.
 const SLOW: f64 = 0.3;
 
-/// Steps below this part of their direction are short.
+/// A step is short if its length is below this fraction of its direction.
 const SHORT: f64 = 0.2;
 
-/// Smallest damping above zero.
+/// Smallest nonzero damping.
 const LEAST_DAMPING: f64 = 0.01;
 
 impl Buffers {
-    /// Finds the equilibrium of a step, starting from the unknowns given. `iterations` counts up. Where the step has to end at a time, it ends after the first
-    /// iteration at which another one as long as the last would be late.
+    /// Finds the equilibrium of a step, starting from the given unknowns. `iterations` is
+    /// increased. If the step has a deadline, it ends after the first iteration at which another
+    /// iteration of the same duration would be late.
     pub(crate) fn solve(
         &mut self,
         body: &SoftBody,
@@ -38,10 +42,12 @@ impl Buffers {
         let mut began = Instant::now();
         for iteration in 0..=settings.max_iterations {
             let residual = now.unbalanced_n / now.load_n.max(body.least_load_n());
-            // The start is accepted as the solution only if it is much better than the tolerance: errors must not accumulate over steps.
+            // The start is accepted as the solution only if it is much better than the tolerance,
+            // because errors must not accumulate over steps.
             let goal = if iteration == 0 { UNTOUCHED } else { 1.0 } * settings.tolerance;
             if residual <= goal {
-                // Some materials pass through inverted tetrahedra, but an equilibrium must have none.
+                // Some materials can pass through inverted tetrahedra, but an equilibrium must have
+                // none.
                 if now.smallest_volume_ratio <= 0.0 {
                     return Err(Failure::Inverted);
                 }
@@ -89,7 +95,8 @@ impl Buffers {
                         now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
                     }
                 }
-                // No decrease along the direction: once more with new factors and damping.
+                // The energy does not decrease along the direction: it is tried once more, with new
+                // factors and damping.
                 Err(_) if !has_failed => {
                     has_failed = true;
                     self.has_matrix = false;
@@ -107,7 +114,8 @@ impl Buffers {
         })
     }
 
-    /// Increases the damping after short steps, which show that the tangent is a poor guide (Levenberg, 1944), and decreases it after whole ones.
+    /// Increases the damping after short steps, which show that the tangent is a poor guide
+    /// (Levenberg, 1944), and decreases it after full steps.
     fn adapt_damping(&mut self, length: f64) {
         if length < SHORT {
             self.damping = (4.0 * self.damping).max(LEAST_DAMPING);
@@ -120,7 +128,7 @@ impl Buffers {
     }
 }
 
-/// Lets friction follow the normal forces; returns by how much its limits change altogether, N.
+/// Updates friction to the present normal forces; returns the sum of the changes of its limits, N.
 fn follow_friction(contacts: &mut [Contact]) -> f64 {
     let frictions = contacts.iter_mut().filter_map(Contact::friction_mut);
     frictions
@@ -128,7 +136,8 @@ fn follow_friction(contacts: &mut [Contact]) -> f64 {
         .sum()
 }
 
-/// Updates the multipliers of those shapes in which a node is too deep. True if there are any.
+/// Updates the multipliers of those shapes that a node is too deep in. Returns true if there are
+/// any.
 fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
     let mut any = false;
     for contact in contacts {

@@ -5,23 +5,26 @@ use super::workspace::Buffers;
 use crate::body::SoftBody;
 use crate::nodal::dot;
 
-/// Trial steps of a line search after which the direction fails.
+/// Largest number of trial steps of a line search, after which the direction fails.
 const MAX_TRIALS: u32 = 20;
 
-/// Part of the decrease promised by the slope that a trial step must reach (Armijo).
+/// Fraction of the decrease predicted by the slope that a trial step must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Longest step, in units of the direction: where a node slips off an edge, the energy is concave and the direction too short.
+/// Longest step, in units of the direction. Where a node slips off an edge, the energy is concave
+/// and the direction too short.
 const MAX_STRETCH: f64 = 16.0;
 
-/// A trial whose slope is below this part of that at the start is accepted.
+/// A trial is accepted if its slope is below this fraction of that at the start.
 const FLAT: f64 = 0.5;
 
-/// A change below this part of the energy, and of the shear modulus times the volume, is round-off; the slope decides then.
+/// A change below this fraction of the energy, and of the shear modulus times the volume, is
+/// round-off; then the slope decides.
 const ROUND_OFF: f64 = 1e-13;
 
 impl Buffers {
-    /// Finds a step along the direction to about the lowest energy. Trials cost little compared with a direction.
+    /// Finds a step along the direction to approximately the lowest energy. Trials cost little
+    /// compared with a direction.
     pub(super) fn search(
         &mut self,
         body: &SoftBody,
@@ -33,7 +36,8 @@ impl Buffers {
         let round_off = ROUND_OFF * (start.energy.abs() + body.energy_scale_n_mm());
         self.start_mm.copy_from_slice(x.displacements_mm);
         self.start_mpa.copy_from_slice(x.pressures_mpa);
-        // At `low`, the best trial, the energy still falls; beyond `high` it rises, or a tetrahedron is inside out.
+        // At `low`, the best trial so far, the energy still falls. Beyond `high` it rises, or a
+        // tetrahedron is inverted.
         let (mut low, mut slope_at_low, mut is_usable) = (0.0, slope_at_start, false);
         let (mut high, mut slope_at_high) = (f64::INFINITY, None);
         let mut length = 1.0;

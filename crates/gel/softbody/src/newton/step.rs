@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::contact::{Contact, PassedThrough, RigidBody};
 use crate::element::Response;
 
-/// A step to solve: everything that stays fixed while the displacements are sought.
+/// A step to solve: everything that is fixed while the displacements are computed.
 pub(crate) struct Step<'a> {
     pub(crate) response: Response<'a>,
     pub(crate) shapes: &'a [RigidBody<'a>],
@@ -26,7 +26,8 @@ pub(crate) struct Beginning {
     pub(crate) contacts: Vec<Contact>,
 }
 
-/// An equilibrium that a step passed, and its contacts before their multipliers were updated.
+/// An equilibrium on the way to the end of a step, and its contacts before their multipliers were
+/// updated.
 pub(crate) struct Passed {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
@@ -42,22 +43,22 @@ pub(crate) enum Failure {
     PassedThrough(PassedThrough),
 }
 
-/// How a step ended well.
+/// The end of a step that succeeded.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Equilibrium {
     pub(crate) residual: f64,
     pub(crate) smallest_volume_ratio: f64,
-    /// Whether the forces are balanced; else the time was up.
+    /// Whether the forces are balanced; otherwise the deadline has passed.
     pub(crate) is_settled: bool,
 }
 
-/// Energy and its slope at a set of displacements.
+/// Energy, and the size of its gradient, at given displacements.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Evaluation {
     pub(crate) energy: f64,
     pub(super) smallest_volume_ratio: f64,
     /// 2-norm of the gradient at free nodes, N.
     pub(super) unbalanced_n: f64,
-    /// Sum of the sizes of all forces from outside, N.
+    /// Sum of the magnitudes of all external forces, N.
     pub(super) load_n: f64,
 }

@@ -12,7 +12,7 @@ use crate::linear::cycle::Cycle;
 use crate::linear::krylov::ConjugateGradients;
 use crate::linear::matrix::Matrix;
 
-/// Scratch memory of a press. It is not part of the state: a clone starts without.
+/// Scratch memory of a press. It is not part of the state: a clone starts without it.
 #[derive(Default)]
 pub(crate) struct Workspace(Option<Box<Buffers>>);
 
@@ -24,11 +24,12 @@ impl Clone for Workspace {
 
 pub(crate) struct Buffers {
     pub(super) matrix: Matrix,
-    /// Whether the matrix led to a good step when it was used last. Then it is used again, in this step and the next.
+    /// Whether the matrix led to a good step when it was last used. It is then used again, in this
+    /// step and the next.
     pub(crate) has_matrix: bool,
-    /// None after a direction along which the energy did not fall.
+    /// `None` after a direction along which the energy did not fall.
     pub(super) factors: Option<Factors>,
-    /// Where factors are made; only presses that make some of their own have it.
+    /// Where factors are made; only presses that make their own factors have it.
     pub(super) tangent: Option<Box<Tangent>>,
     pub(super) cycle: Cycle,
     pub(super) gradients: ConjugateGradients,
@@ -36,27 +37,30 @@ pub(crate) struct Buffers {
     pub(super) coarse_tangents: Vec<CoarseTangent>,
     pub(super) forces: Forces,
     pub(super) volumes: Volumes,
-    /// Pressures of each slot's corners, MPa.
+    /// Pressures of the corners of each slot, MPa.
     pub(super) corners: Vec<[f64; 4]>,
-    /// Extra stiffness, in units of each node's own, that keeps steps within reach.
+    /// Extra stiffness, in units of the own stiffness of each node, that limits steps.
     pub(super) damping: f64,
-    /// Gradient of the energy at each node, N; at bonded nodes the force of what holds them. `[n_nodes]`
+    /// Gradient of the energy at each node, N; at bonded nodes, the force that holds them;
+    /// `[n_nodes]`.
     pub(crate) gradient_n: Vec<DVec3>,
     /// `[n_free]`
     pub(crate) direction_mm: Vec<DVec3>,
-    /// Pressures at which the tangent is taken, MPa. They are unknowns of their own, as in a mixed formulation, which the linear systems take to
-    /// equilibrium. With the pressures of the present volumes the tangent would be a poor guide on the way there.
+    /// Pressures at which the tangent is taken, MPa. They are separate unknowns, as in a mixed
+    /// formulation, which the linear systems bring to equilibrium. With the pressures that follow
+    /// from the present volumes, the tangent would be a poor guide on the way there.
     pub(super) foreseen_mpa: Vec<f64>,
     pub(super) start_mm: Vec<DVec3>,
     pub(super) start_mpa: Vec<f64>,
-    /// Where the step began.
+    /// The unknowns at the start of the step.
     pub(crate) old: Beginning,
-    /// Whether equilibria before an update of the multipliers are kept, and those of the last step.
+    /// Whether equilibria before an update of the multipliers are stored; and those of the last
+    /// step.
     pub(crate) keeps_passed: bool,
     pub(crate) passed: Vec<Passed>,
-    /// When a step has to end, settled or not.
+    /// Deadline of the step, if it has one.
     pub(crate) ends_at: Option<Instant>,
-    /// Time spent since this was last taken.
+    /// Time spent since this was last read and reset.
     pub(crate) cost: Cost,
 }
 
@@ -93,7 +97,8 @@ impl Workspace {
 }
 
 impl Buffers {
-    /// Takes the true tangent at the unknowns, which are at equilibrium, for the directions to come.
+    /// Selects the true tangent at the unknowns, which are at equilibrium, for the following
+    /// directions.
     pub(crate) fn stand_at(&mut self, x: &Unknowns) {
         self.damping = 0.0;
         self.foreseen_mpa.copy_from_slice(x.pressures_mpa);

@@ -1,4 +1,4 @@
-//! The rates of a state, and how they follow a step.
+//! The derivatives of a state ("rates"), and their update by a step.
 
 use std::collections::BTreeSet;
 
@@ -14,20 +14,21 @@ use crate::newton::{Buffers, Failure, Step, Unknowns};
 use crate::nodal::{dot, moved};
 use crate::relaxation::{History, Relaxation};
 
-/// The rates of a state along one direction.
+/// The derivatives of a state along one direction.
 #[derive(Clone)]
 pub(crate) struct Sensitivity {
     direction: Direction,
     displacements_mm: Vec<DVec3>,
     pressures_mpa: Vec<f64>,
     history: History,
-    /// Of the contacts' multipliers, and of their gaps at the last equilibrium. `[n_shapes][n_boundary_nodes]`
+    /// Derivatives of the contacts' multipliers; and of their gaps at the last equilibrium.
+    /// `[n_shapes][n_boundary_nodes]`
     multipliers_mm: Vec<Vec<f64>>,
     gaps_mm: Vec<Vec<f64>>,
     indenter_force_n: DVec3,
 }
 
-/// Updates the rates to the end of a step that has found its equilibrium.
+/// Updates the derivatives to the end of a step that has found its equilibrium.
 pub(crate) fn follow(
     body: &SoftBody,
     buffers: &mut Buffers,
@@ -52,14 +53,14 @@ pub(crate) fn follow(
     for sensitivity in sensitivities {
         sensitivity.finish(body, step, x);
     }
-    // The buffers hold the forces of the step again.
+    // After this, the buffers again contain the forces of the step.
     buffers
         .evaluate(body, step, x)
         .map(|_| ())
         .ok_or(Failure::Inverted)
 }
 
-/// Finds the rates of one equilibrium.
+/// Computes the derivatives of one equilibrium.
 fn differentiate(
     body: &SoftBody,
     buffers: &mut Buffers,
@@ -80,7 +81,8 @@ fn differentiate(
 }
 
 impl Sensitivity {
-    /// No rates, of a body at rest with so many nodes and pressures. `of_touches` are zeros for each shape and node of the boundary.
+    /// Derivatives of zero, for a body at rest with these numbers of nodes and pressures.
+    /// `of_touches` are zeros for each shape and node of the boundary.
     pub(crate) fn zero(
         direction: Direction,
         [n_nodes, n_pressures]: [usize; 2],
@@ -98,34 +100,35 @@ impl Sensitivity {
         }
     }
 
-    /// Prepares for an indenter of so many parts instead of `n_before`, which nothing touches yet.
+    /// Prepares for an indenter of `n_parts` parts instead of `n_before`; nothing is in contact
+    /// with it yet.
     pub(crate) fn take_parts(&mut self, n_before: usize, n_parts: usize, n_boundary_nodes: usize) {
         for of_touches in [&mut self.multipliers_mm, &mut self.gaps_mm] {
             of_touches.splice(..n_before, vec![vec![0.0; n_boundary_nodes]; n_parts]);
         }
     }
 
-    /// The direction along which these are the rates.
+    /// The direction of these derivatives.
     pub(crate) fn direction(&self) -> &Direction {
         &self.direction
     }
 
-    /// Of the displacements, mm over the unit of the parameter. `[n_nodes]`
+    /// Derivatives of the displacements, mm per unit of the parameter; `[n_nodes]`.
     pub(crate) fn displacements_mm(&self) -> &[DVec3] {
         &self.displacements_mm
     }
 
-    /// Of the pressures, MPa over the unit of the parameter. `[n_coarse]`
+    /// Derivatives of the pressures, MPa per unit of the parameter; `[n_coarse]`.
     pub(crate) fn pressures_mpa(&self) -> &[f64] {
         &self.pressures_mpa
     }
 
-    /// Of the indenter's force, N over the unit of the parameter.
+    /// Derivative of the indenter's force, N per unit of the parameter.
     pub(crate) fn indenter_force_n(&self) -> DVec3 {
         self.indenter_force_n
     }
 
-    /// Follows the contacts' multipliers from one equilibrium to the next.
+    /// Updates the derivatives of the multipliers from one equilibrium to the next.
     fn follow_multipliers(&mut self, before: &[Contact], now: &[Contact]) {
         let rates = self.multipliers_mm.iter_mut().zip(&self.gaps_mm);
         for ((multiplier_mm, gaps_mm), (before, now)) in rates.zip(before.iter().zip(now)) {
@@ -141,7 +144,7 @@ impl Sensitivity {
         }
     }
 
-    /// Finds how displacements, pressures, gaps and the indenter's force change.
+    /// Computes the derivatives of displacements, pressures, gaps and the indenter's force.
     fn solve(&mut self, buffers: &mut Buffers, tangent: &mut Tangent) -> Result<(), Failure> {
         let (body, step, x) = (tangent.body, tangent.step, tangent.x);
         let n_free = body.pattern.halves.free;
@@ -161,7 +164,7 @@ impl Sensitivity {
         for (force, pushed) in unbalanced_n.iter_mut().zip(&pushed) {
             *force = *pushed - *force;
         }
-        // At rest a parameter unbalances nothing but round-off.
+        // In a body at rest, a parameter unbalances nothing but round-off.
         let enough_n = ACCURACY * scale_n.max(body.negligible_load_n());
         let Solution {
             rates_mm,
@@ -171,7 +174,8 @@ impl Sensitivity {
         let stiffening =
             self.direction.rate(Material::volume_modulus_kpa) / body.material().volume_modulus_kpa();
         self.pressures_mpa = moved(&rates_mpa, x.pressures_mpa, stiffening);
-        // As in a frame, what is left unbalanced at a node in touch is the contact's own error.
+        // As in a frame, the force that is unbalanced at a node in contact is the error of the
+        // contact.
         let n_parts = body.n_indenter_parts(x.contacts.len());
         let pushes = (0..n_parts).flat_map(|part| self.contact_forces_n(body, step, x, part, &rates_mm));
         let pushes: DVec3 = pushes.sum();
@@ -192,7 +196,7 @@ impl Sensitivity {
         Ok(())
     }
 
-    /// Rates of the elements' forces at displacements that stay, N.
+    /// Derivatives of the elements' forces at fixed displacements, N.
     fn element_forces_n(&self, body: &SoftBody, step: &Step, x: &Unknowns) -> Vec<DVec3> {
         let Response {
             relaxation, history, ..
@@ -224,7 +228,8 @@ impl Sensitivity {
         sums
     }
 
-    /// Rates of the forces with which a shape pushes each point of the boundary, N, as the nodes move. `[n_points]`
+    /// Derivatives of the forces with which a shape pushes each point of the boundary, N, as the
+    /// nodes move; `[n_points]`.
     fn contact_forces_n(
         &self,
         body: &SoftBody,
@@ -241,7 +246,7 @@ impl Sensitivity {
             DVec3::ZERO
         };
         let rigid = &step.shapes[shape];
-        // Quadrature points inside triangles have no multiplier.
+        // Quadrature points inside of triangles have no multiplier.
         let multipliers = self.multipliers_mm[shape].iter().chain(std::iter::repeat(&0.0));
         let touches = x.contacts[shape].each(&body.boundary).zip(multipliers);
         touches
@@ -266,7 +271,7 @@ impl Sensitivity {
             .collect()
     }
 
-    /// Updates the rates of the history variables to the end of the step.
+    /// Updates the derivatives of the history variables to the end of the step.
     fn finish(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
         let Response {
             relaxation, history, ..

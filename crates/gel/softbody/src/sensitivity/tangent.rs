@@ -7,25 +7,27 @@ use crate::contact::Contact;
 use crate::newton::{Buffers, Failure, Step, Unknowns};
 use crate::nodal::{add, dot};
 
-/// Farthest that a node moves in a difference of forces, mm: very little of the depth over which a contact's force starts.
+/// Largest motion of a node in a difference of forces, mm: a very small fraction of the depth over
+/// which the force of a contact starts.
 pub(super) const DIFFERENCE_MM: f64 = 1e-8;
 
-/// A rate is known when the 2-norm of what is left unbalanced is below this part of what the parameter unbalances.
+/// A derivative is accurate enough when the 2-norm of the forces that it leaves unbalanced is below
+/// this fraction of those that the parameter unbalances.
 pub(super) const ACCURACY: f64 = 1e-5;
 
-/// Accuracy of the linear system in single precision, as that of a Newton direction.
+/// Accuracy of the linear system in single precision, like that of a Newton direction.
 const FORCING: f64 = 0.03;
 
-/// Linear systems after which a rate is given up.
+/// Largest number of linear systems for one derivative.
 const MAX_ROUNDS: u32 = 60;
 
-/// Rates of the unbalanced forces, and of the pressures.
+/// Derivatives of the unbalanced forces, and of the pressures.
 struct Rates {
     forces_n: Vec<DVec3>,
     pressures_mpa: Vec<f64>,
 }
 
-/// Rates of displacements and pressures, and what they leave unbalanced.
+/// Derivatives of displacements and pressures, and the forces that they leave unbalanced.
 pub(super) struct Solution {
     pub(super) rates_mm: Vec<DVec3>,
     pub(super) rates_mpa: Vec<f64>,
@@ -38,7 +40,7 @@ pub(super) struct Tangent<'a, 'b> {
     pub(super) step: &'a Step<'a>,
     pub(super) x: &'a Unknowns<'b>,
     unbalanced_n: Vec<DVec3>,
-    /// Where differences are taken.
+    /// The displacements at which differences are taken.
     displacements_mm: Vec<DVec3>,
     pressures_mpa: Vec<f64>,
     contacts: Vec<Contact>,
@@ -52,7 +54,7 @@ impl<'a, 'b> Tangent<'a, 'b> {
         step: &'a Step<'a>,
         x: &'a Unknowns<'b>,
     ) -> Self {
-        // That of Newton's method may be old.
+        // The tangent of Newton's method may be outdated.
         buffers.has_matrix = false;
         Self {
             body,
@@ -65,7 +67,7 @@ impl<'a, 'b> Tangent<'a, 'b> {
         }
     }
 
-    /// Rates of the unbalanced forces, N, and of the pressures, MPa, as the nodes move.
+    /// Derivatives of the unbalanced forces, N, and of the pressures, MPa, as the nodes move.
     fn product(&mut self, buffers: &mut Buffers, rates_mm: &[DVec3]) -> Result<Rates, Failure> {
         let farthest = rates_mm.iter().map(|rate| rate.length()).fold(0.0, f64::max);
         if farthest == 0.0 {
@@ -96,11 +98,14 @@ impl<'a, 'b> Tangent<'a, 'b> {
         })
     }
 
-    /// Solves `K rates = forces` by conjugate gradients that the single-precision solver preconditions; the preconditioner varies, so that
-    /// each direction is made conjugate to the last one explicitly.
+    /// Solves `K rates = forces` by conjugate gradients with the single-precision solver as the
+    /// preconditioner. The preconditioner varies, so each direction is made conjugate to the
+    /// previous one explicitly.
     ///
-    /// Where a coarse triangle cuts off a rim, a point inside it can be as deep as the rim is round: the way out turns about the middle of the rounding, a stiffness
-    /// below zero. Conjugate gradients go on through directions of such a stiffness; what is left unbalanced says whether the rates are right.
+    /// Where a coarse triangle cuts off a rim, a point inside of it can be as deep as the rim is
+    /// round. The outward direction then turns about the centre of the rounding, which is a
+    /// negative stiffness. Conjugate gradients continue through directions of such a stiffness; the
+    /// forces that remain unbalanced show whether the derivatives are right.
     pub(super) fn solve(
         &mut self,
         buffers: &mut Buffers,

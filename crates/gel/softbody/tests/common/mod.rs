@@ -1,4 +1,4 @@
-//! Blocks, spheres and boxes to press.
+//! Blocks, balls and walls for tests.
 #![allow(dead_code, unused_imports)] // each test takes what it needs
 
 use std::sync::Arc;
@@ -49,7 +49,7 @@ impl SignedDistance for Wall {
     }
 }
 
-/// The body within four walls about the z axis.
+/// The body between four walls around the z axis.
 pub(crate) fn walled(body: SoftBody, half_mm: [f64; 2]) -> SoftBody {
     let [x_mm, y_mm] = half_mm;
     [
@@ -68,7 +68,7 @@ pub(crate) fn walled(body: SoftBody, half_mm: [f64; 2]) -> SoftBody {
     })
 }
 
-/// Presses straight down from the height at which the origin touches.
+/// Presses straight down, from the height at which the origin touches.
 pub(crate) fn press(
     body: &SoftBody,
     state: &mut State,
@@ -84,7 +84,8 @@ pub(crate) fn press(
     )
 }
 
-/// Mean over a disc of a nodal field given on the bottom of a block with these lines, by bilinear interpolation.
+/// Mean over a disc of a nodal field on the bottom of a block with these lines, by bilinear
+/// interpolation.
 pub(crate) fn disc_mean(x_mm: &[f64], y_mm: &[f64], field: &[f64], at_mm: [f64; 2], radius_mm: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for i in -20..=20 {
@@ -112,7 +113,7 @@ pub(crate) fn disc_mean(x_mm: &[f64], y_mm: &[f64], field: &[f64], at_mm: [f64; 
     sum / count
 }
 
-/// A nodal field at the bottom nodes, x fastest, for places that are nodes.
+/// A nodal field at the bottom nodes, x fastest, for positions that are nodes.
 pub(crate) fn by_place(body: &SoftBody, nodal: &[f64], x: &[f64], y: &[f64]) -> Vec<f64> {
     let at = |places: &[f64], value: f64| places.iter().position(|place| (place - value).abs() < 1e-9);
     let mut found = vec![f64::NAN; x.len() * y.len()];

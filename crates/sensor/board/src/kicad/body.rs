@@ -1,5 +1,5 @@
-//! Bodies of parts for pictures and for the solid of the whole board: boxes, as STEP (ISO 10303-21,
-//! protocol 214).
+//! Bodies of parts, for pictures and for the solid of the whole board: boxes as STEP files (ISO
+//! 10303-21, protocol 214).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ pub(super) fn models(board: &Design) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// Red, green and blue of a body.
+/// Colour of a body: red, green, blue.
 fn color(land: &Land) -> [f64; 3] {
     match land.name {
         name if name.starts_with("C_") => [0.62, 0.50, 0.35],
@@ -29,7 +29,7 @@ fn color(land: &Land) -> [f64; 3] {
 }
 
 fn box_of(land: &Land) -> String {
-    // Footprints have y down, solids have it up.
+    // Footprints have y down, solids have y up.
     let low = DVec3::new(land.body.min.x, -land.body.max.y, 0.0);
     let high = DVec3::new(land.body.max.x, -land.body.min.y, land.height_mm);
     let mut step = Step::default();
@@ -46,8 +46,8 @@ fn box_of(land: &Land) -> String {
     )
 }
 
-/// The corners of each face of a box, counter-clockwise from outside. Bits of a corner's number: x,
-/// y, z at the high end.
+/// The corners of each face of a box, counter-clockwise from outside. The bits of a corner's number
+/// say whether x, y and z are at the high end.
 const FACES: [[usize; 4]; 6] = [
     [0, 2, 3, 1],
     [4, 5, 7, 6],
@@ -57,7 +57,7 @@ const FACES: [[usize; 4]; 6] = [
     [1, 3, 7, 5],
 ];
 
-/// Entities, numbered as they come.
+/// STEP entities, numbered in their order.
 #[derive(Default)]
 struct Step {
     text: String,
@@ -84,7 +84,7 @@ impl Step {
         self.add(&format!("AXIS2_PLACEMENT_3D('',#{at},#{axis},#{along})"))
     }
 
-    /// Millimetres and radians.
+    /// The units: millimetres and radians.
     fn context(&mut self) -> usize {
         let length = self.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
         let angle = self.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");

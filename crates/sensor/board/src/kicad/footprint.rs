@@ -86,7 +86,7 @@ fn angle(place: Placement) -> String {
     }
 }
 
-/// Identifiers stand in boards alone.
+/// Only footprints on boards have identifiers.
 fn uuid(part: Option<&OnBoard<'_>>, what: &str) -> String {
     part.map_or(String::new(), |part| {
         format!(" (uuid {})", id(&format!("{} {what}", part.part.reference)))

@@ -1,7 +1,7 @@
 //! A board as the files of a KiCad 9 project.
 //!
-//! The forms of the files are those that `kicad-cli` 9.0.8 reads without a word. Identifiers are
-//! hashes of names.
+//! The files have the form that `kicad-cli` 9.0.8 reads without warnings. Identifiers are hashes of
+//! names.
 
 mod body;
 mod footprint;

@@ -31,7 +31,7 @@ const LAYERS: &str = r#"  (layers
   )
 "#;
 
-/// Nets by number: those of the circuit, then those of pins that are left open, which KiCad names
+/// Nets by number: first those of the circuit, then those of unconnected pins, which KiCad names
 /// after the pin.
 struct Nets<'a> {
     board: &'a Design,
@@ -180,7 +180,7 @@ fn points(all: &[DVec2]) -> String {
     format!("(pts {})", all.join(" "))
 }
 
-/// A ground pour: its zone, which is the whole board, and what of it is copper.
+/// A ground pour: its zone, which is the whole board, and the polygons of copper in it.
 fn zone(board: &Design, side: Side, polygons: &[Polygon]) -> String {
     let number = board
         .nets

@@ -1,4 +1,4 @@
-//! The schematic: parts in rows, their pins named by the nets that they are on.
+//! The schematic: parts in rows. Each pin is labelled with its net.
 
 use std::fmt::Write as _;
 
@@ -9,11 +9,11 @@ use super::text::{GENERATOR, LIBRARY, id, mm, pair, quoted};
 use crate::circuit::{GND, Part, SUPPLY};
 use crate::design::Design;
 
-/// Distances of columns and rows, mm: multiples of KiCad's grid.
+/// Distances of columns and rows, mm; multiples of KiCad's grid.
 const COLUMN_MM: f64 = 50.8;
 const ROW_MM: f64 = 27.94;
 const BORDER_MM: f64 = 38.1;
-/// Taxels in one column of rows.
+/// Number of taxels in one column.
 const TAXELS_IN_COLUMN: usize = 8;
 
 /// The identifier of a part's symbol.
@@ -53,7 +53,7 @@ pub(super) fn schematic(board: &Design) -> String {
     text + "  (sheet_instances (path \"/\" (page \"1\")))\n  (embedded_fonts no)\n)\n"
 }
 
-/// Where each part is on the sheet.
+/// The position of each part on the sheet.
 fn places(board: &Design) -> Vec<DVec2> {
     let circuit = &board.circuit;
     let mut places = vec![DVec2::ZERO; circuit.parts.len()];
@@ -161,7 +161,7 @@ fn of_project(board: &Design, reference: &str) -> String {
     )
 }
 
-/// Says that a net is supplied from outside.
+/// A power flag: the net is supplied from outside.
 fn flag(board: &Design, index: usize, net: &str, at: DVec2) -> String {
     let reference = format!("#FLG{index:02}");
     let mut text = label(net, at, true, &reference);

@@ -3,7 +3,7 @@
 use super::text::{LIBRARY, quoted};
 use crate::rules::{CLEARANCE_MM, EDGE_CLEARANCE_MM, SIGNAL_WIDTH_MM, VIA_DRILL_MM, VIA_MM};
 
-/// The project file: the rules that design rule checks apply.
+/// The project file, with the limits for design rule checks.
 pub(super) fn project(name: &str) -> String {
     let ring = 0.5 * (VIA_MM - VIA_DRILL_MM);
     format!(
@@ -47,7 +47,7 @@ pub(super) fn project(name: &str) -> String {
     )
 }
 
-/// A table of one library.
+/// A table with one library.
 pub(super) fn table(kind: &str, file: &str) -> String {
     format!(
         "({kind}\n  (version 7)\n  (lib (name \"{LIBRARY}\")(type \"KiCad\")(uri \

@@ -9,9 +9,9 @@ use super::text::{GENERATOR, LIBRARY, mm, quoted};
 use crate::design::Design;
 use crate::device::{Device, Pin};
 
-/// Distance of pins, and their length, mm.
+/// Pitch of pins, and their length, mm.
 const PITCH_MM: f64 = 2.54;
-/// Half of the width of a box, mm, of one with three pins, and of one with two.
+/// Half the width of a box, mm: of the usual box, of one with three pins, and of one with two.
 const HALF_WIDE_MM: f64 = 10.16;
 const HALF_MIDDLE_MM: f64 = 5.08;
 const HALF_NARROW_MM: f64 = 2.54;
@@ -33,7 +33,7 @@ pub(super) fn pin_ends(device: &Device) -> Vec<DVec2> {
         .collect()
 }
 
-/// How many rows of pins a symbol has.
+/// Number of rows of pins of a symbol.
 pub(super) fn rows(device: &Device) -> usize {
     let left = device.pins.iter().filter(|pin| pin.is_left).count();
     left.max(device.pins.len() - left)
@@ -59,7 +59,7 @@ pub(super) fn library(board: &Design) -> String {
     text + ")\n"
 }
 
-/// The same symbols as a schematic keeps them.
+/// The same symbols in the form in which a schematic contains them.
 pub(super) fn kept(board: &Design) -> String {
     let mut text = "  (lib_symbols\n".to_owned();
     for (name, device) in devices(board) {
@@ -74,7 +74,7 @@ fn devices(board: &Design) -> BTreeMap<&str, &Device> {
     parts.map(|part| (part.device.symbol, &part.device)).collect()
 }
 
-/// Fields that every symbol has.
+/// The fields of every symbol.
 fn fields(reference: &str, value: &str, top: f64) -> String {
     let mut text = String::new();
     for (name, of, y) in [
@@ -140,7 +140,7 @@ fn pin_text(pin: &Pin, end: DVec2) -> String {
     )
 }
 
-/// The symbol that says that a net is supplied from outside.
+/// The symbol of a power flag: the net is supplied from outside.
 fn flag(name: &str) -> String {
     let mut text = format!(
         "  (symbol {} (power) (pin_numbers (hide yes)) (pin_names (offset 0) (hide yes)) (exclude_from_sim no) \

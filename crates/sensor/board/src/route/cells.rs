@@ -1,13 +1,13 @@
-//! Where tracks that can still move are in the way of others.
+//! The grid points that are blocked by tracks which can still move.
 
 use super::grid::{Grid, KINDS, STEP_MM, VIA, half_width, is_on};
 use crate::rules::{CLEARANCE_MM, MARGIN_MM, VIA_TO_VIA_MM};
 use crate::shapes::Shape;
 
-/// How far around a crossing the way becomes dearer, mm: about the distance of two tracks.
+/// Radius around a crossing in which the cost rises, mm: about the distance of two tracks.
 const FOUGHT_MM: f64 = 0.25;
 
-/// For each kind and node, how many paths forbid it, and how often it was fought over.
+/// For each kind and node: how many paths block it, and how often it was crossed.
 #[derive(Debug)]
 pub(super) struct Cells {
     counts: [Vec<u16>; KINDS],
@@ -42,8 +42,8 @@ impl Cells {
         u32::from(self.fights[kind][node])
     }
 
-    /// Remembers that a path crossed others here: the next one had better keep farther away than
-    /// one grid point.
+    /// Records that a path crossed others here. The cost also rises at neighbouring grid points, so
+    /// that the next path keeps farther away than one grid point.
     pub(super) fn fought(&mut self, grid: &Grid, kind: usize, node: usize) {
         for near in grid.near(&Shape::disc(grid.at(node), 0.0), FOUGHT_MM) {
             let fights = &mut self.fights[kind][near];
@@ -52,7 +52,7 @@ impl Cells {
     }
 }
 
-/// What a path forbids to other nets: kinds and nodes, each once.
+/// The kinds and nodes that a path blocks for other nets, each once.
 pub(super) fn cells_of(grid: &Grid, tracks: &[(usize, Shape)], vias: &[Shape]) -> Vec<(u8, u32)> {
     let mut cells = Vec::new();
     let mut forbid = |kind: usize, shape: &Shape, reach: f64| {
@@ -79,7 +79,8 @@ pub(super) fn cells_of(grid: &Grid, tracks: &[(usize, Shape)], vias: &[Shape]) -
     cells
 }
 
-/// Nodes at which a via would be too close to one of these, but not the node of one itself.
+/// The nodes at which a via would be too close to one of these vias. The nodes of the vias
+/// themselves are allowed.
 pub(super) fn too_close_for_a_via(grid: &Grid, vias: &[usize]) -> Vec<usize> {
     let nodes = vias.iter().flat_map(|&via| {
         let own = Shape::disc(grid.at(via), 0.0);

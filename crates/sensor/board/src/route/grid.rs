@@ -1,4 +1,4 @@
-//! The grid, and what is near the copper that does not move.
+//! The grid, and the grid points near copper that cannot move.
 
 use glam::DVec2;
 
@@ -13,8 +13,8 @@ use crate::shapes::Shape;
 /// Distance of grid points, mm.
 pub(super) const STEP_MM: f64 = 0.1;
 
-/// What can stand at a grid point: a signal track on top or bottom, a power track on top or bottom,
-/// a via.
+/// The kinds of copper at a grid point: a signal track on top or bottom, a power track on top or
+/// bottom, a via.
 pub(super) const KINDS: usize = 5;
 pub(super) const VIA: usize = 4;
 
@@ -23,7 +23,7 @@ pub(super) fn track_kind(is_power: bool, layer: usize) -> usize {
     2 * usize::from(is_power) + layer
 }
 
-/// Half of a kind's width.
+/// Half the width of a kind, mm.
 pub(super) fn half_width(kind: usize) -> f64 {
     0.5 * match kind {
         0 | 1 => SIGNAL_WIDTH_MM,
@@ -45,7 +45,7 @@ pub(super) fn side_of(layer: usize) -> Side {
     if layer == 0 { Side::Top } else { Side::Bottom }
 }
 
-/// Points of the grid.
+/// The grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     pub(crate) origin: DVec2,
@@ -73,7 +73,7 @@ impl Grid {
         self.origin + STEP_MM * DVec2::new(column as f64, row as f64)
     }
 
-    /// Nodes nearer to a shape than `reach`.
+    /// Nodes whose distance to a shape is less than `reach`, mm.
     pub(crate) fn near(&self, shape: &Shape, reach: f64) -> Vec<usize> {
         let (min, max) = shape.bounds();
         let low = ((min - reach - self.origin) / STEP_MM).floor().max(DVec2::ZERO);
@@ -86,7 +86,7 @@ impl Grid {
             .collect()
     }
 
-    /// The nodes next to a point, one where it is on the grid.
+    /// The nodes next to a point; only one if the point is on the grid.
     pub(crate) fn next_to(&self, point: DVec2) -> Vec<usize> {
         let place = (point - self.origin) / STEP_MM;
         let near = |value: f64| {
@@ -105,10 +105,10 @@ impl Grid {
     }
 }
 
-/// Nobody's: no net may be there.
+/// No net may be there.
 const NOBODY: u16 = u16::MAX;
 
-/// For each kind and node: 0 where every net may be, a net's number plus 1 where it alone may be.
+/// For each kind and node: 0 if every net may be there; a net's number plus 1 if only this net may.
 #[derive(Debug)]
 pub(super) struct Fixed {
     owners: [Vec<u16>; KINDS],
@@ -162,7 +162,7 @@ impl Fixed {
         };
     }
 
-    /// Whether a net may have that there.
+    /// Whether a net may have copper of this kind there.
     pub(super) fn allows(&self, kind: usize, node: usize, net: usize) -> bool {
         let owner = self.owners[kind][node];
         owner == 0 || usize::from(owner) == net + 1

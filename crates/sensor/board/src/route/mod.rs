@@ -1,11 +1,11 @@
-//! The router: each net's pads are joined by tracks and vias on two layers.
+//! The router connects the pads of each net by tracks and vias on two layers.
 //!
-//! A* on a grid of 0.1 mm finds the cheapest way of one piece of a net to another ([`search`]).
-//! What is near copper of other nets is known for each grid point beforehand ([`grid`]). A way may
-//! cross tracks of other nets at a price: these are then taken out and routed again later, and what
-//! was fought over becomes dearer ([`router`]). At the end each net is routed once more with all
-//! others in place, which removes detours ([`tidy`]). Everything happens in a fixed order: the same
-//! board comes out each time.
+//! A* on a grid of 0.1 mm finds the cheapest path from one piece of a net to another ([`search`]).
+//! For each grid point it is known beforehand what is near copper of other nets ([`grid`]). A path
+//! may cross tracks of other nets at a cost. Those tracks are then removed and routed again later,
+//! and crossing at this point costs more from then on ([`router`]). At the end each net is routed
+//! once more with all others in place, which removes detours ([`tidy`]). The order of all steps is
+//! fixed: the same board results each time.
 
 mod cells;
 mod grid;
@@ -24,12 +24,12 @@ use crate::shapes::Shape;
 pub(crate) use grid::Grid;
 pub(crate) use run::route;
 
-/// Something of copper that is there before routing.
+/// Copper that exists before routing.
 #[derive(Clone, Debug)]
 pub(crate) struct PadCopper {
     pub(crate) shape: Shape,
     pub(crate) side: Side,
-    /// Its net; `None`: no track may touch it.
+    /// Its net. `None`: no track may touch it.
     pub(crate) net: Option<usize>,
     /// Whether tracks of its net have to reach it.
     pub(crate) is_pin: bool,
@@ -68,7 +68,7 @@ impl Via {
     }
 }
 
-/// What the router made.
+/// The result of the router.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Routed {
     pub(crate) tracks: Vec<Track>,

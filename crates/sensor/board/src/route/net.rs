@@ -1,4 +1,4 @@
-//! A net while it is routed: pins, paths, and what of them already hangs together.
+//! A net during routing: its pins, its paths, and which of them are connected.
 
 use std::collections::HashMap;
 
@@ -10,13 +10,13 @@ use crate::shapes::Shape;
 /// A grid point on a layer.
 pub(super) type Spot = (u8, u32);
 
-/// A way through the grid. A change of layer is a via.
+/// A path through the grid. A change of layer is a via.
 #[derive(Clone, Debug)]
 pub(super) struct Path {
     pub(super) spots: Vec<Spot>,
-    /// What it forbids to others.
+    /// The kinds and nodes that it blocks for other nets.
     pub(super) cells: Vec<(u8, u32)>,
-    /// Its straight pieces, by layer, as copper.
+    /// Its straight segments as copper, with their layer.
     pub(super) tracks: Vec<(usize, Shape)>,
     pub(super) vias: Vec<Shape>,
     pub(super) cost: u32,
@@ -49,7 +49,7 @@ impl Path {
         }
     }
 
-    /// Nodes of its vias.
+    /// The nodes of its vias.
     pub(super) fn via_nodes(&self) -> impl Iterator<Item = usize> + '_ {
         let pairs = self.spots.windows(2);
         pairs
@@ -58,7 +58,7 @@ impl Path {
     }
 }
 
-/// The straight pieces of a way, from node to node.
+/// The straight segments of a path, from node to node.
 fn straight_pieces(grid: &Grid, spots: &[Spot]) -> Vec<(usize, usize, usize)> {
     let mut pieces: Vec<(usize, usize, usize)> = Vec::new();
     let step = |from: usize, to: usize| {
@@ -95,8 +95,8 @@ pub(super) struct Net {
 }
 
 impl Net {
-    /// Pieces that hang together, each with its spots and how many pins it has; pieces with the
-    /// first pins come first.
+    /// Connected pieces: the spots of each, and its number of pins. The piece with the first pin
+    /// comes first.
     pub(super) fn pieces(&self) -> Vec<(Vec<Spot>, usize)> {
         let things = || {
             let pins = self.pins.iter();
@@ -126,7 +126,7 @@ impl Net {
         pieces.into_iter().map(|(_, spots, pins)| (spots, pins)).collect()
     }
 
-    /// The paths that end nowhere: an end touches neither a pin nor another path.
+    /// A path with an end that touches neither a pin nor another path.
     pub(super) fn loose_path(&self) -> Option<usize> {
         let touches = |own: usize, spot: &Spot| {
             let is_at_pin = self.pins.iter().any(|pin| pin.contains(spot));
@@ -143,7 +143,7 @@ impl Net {
         self.paths.iter().map(|path| path.cost).sum()
     }
 
-    /// As copper.
+    /// Appends the net's tracks and vias.
     pub(super) fn copper(&self, tracks: &mut Vec<Track>, vias: &mut Vec<Via>) {
         for path in &self.paths {
             for (layer, shape) in &path.tracks {

@@ -1,4 +1,4 @@
-//! Routes all nets: what is in the way is taken out and routed again later.
+//! Routes all nets. Tracks in the way are removed and routed again later.
 
 use std::collections::VecDeque;
 
@@ -11,20 +11,20 @@ use crate::outline::Outline;
 use crate::rules::{CLEARANCE_MM, VIA_TO_VIA_MM};
 use crate::shapes::{Shape, between_segments};
 
-/// How often a net may be routed anew, on average, before the board counts as too dense.
+/// Average number of new routings for each net, after which the board counts as too dense.
 const TRIES_PER_NET: usize = 60;
 
-/// A net that found no way: from where to where, in mm, and what is in the way.
+/// A net without a path: start and end, mm, and the nets in the way.
 #[derive(Clone, Debug)]
 pub(crate) struct Failure {
     pub(crate) net: usize,
     pub(crate) from: glam::DVec2,
     pub(crate) to: glam::DVec2,
-    /// The nets that it would have to cross, by number.
+    /// Numbers of the nets that it would have to cross.
     pub(crate) across: Vec<usize>,
 }
 
-/// All nets, and what is where.
+/// All nets, and the state of the grid.
 pub(super) struct Router {
     pub(super) grid: Grid,
     pub(super) fixed: Fixed,
@@ -92,7 +92,7 @@ impl Router {
         Ok(())
     }
 
-    /// Half the extent of a net's pins, in steps.
+    /// Half the perimeter of the box around a net's pins, in grid steps.
     fn reach(&self, net: usize) -> i64 {
         let columns = self.grid.columns as u32;
         let spots = || self.nets[net].pins.iter().flatten();
@@ -112,8 +112,8 @@ impl Router {
         (at(pins.first()), at(pins.last()))
     }
 
-    /// Joins all pieces of a net. Paths of other nets that it crosses are taken out; their nets are
-    /// given back.
+    /// Connects all pieces of a net. Removes the paths of other nets that it crosses, and returns
+    /// these nets.
     pub(super) fn join(&mut self, net: usize, may_cross: bool) -> Result<Vec<usize>, Failure> {
         while let Some(loose) = self.nets[net].loose_path() {
             let path = self.nets[net].paths.remove(loose);
@@ -157,8 +157,7 @@ impl Router {
         }
     }
 
-    /// Takes what a net forbids to others out of the cells, so that it does not forbid it to
-    /// itself.
+    /// Removes a net's own paths from the cells, so that the net does not block itself.
     fn lift(&mut self, net: usize) {
         for path in &self.nets[net].paths {
             self.cells.remove(&path.cells);
@@ -171,7 +170,7 @@ impl Router {
         }
     }
 
-    /// Takes out the paths of other nets that a new path is too close to.
+    /// Removes the paths of other nets that are too close to a new path, and returns these nets.
     fn take_out(&mut self, own: usize, path: &Path) -> Vec<usize> {
         let is_power = self.nets[own].is_power;
         let mut fought = Vec::new();

@@ -1,10 +1,10 @@
-//! All of the routing: first every net, then each once more.
+//! The whole routing: first every net, then each net once more.
 
 use super::router::{Failure, Router};
 use super::{PadCopper, Routed, tidy};
 use crate::outline::Outline;
 
-/// Joins the pads of each of `n_nets` nets. `is_power` says which nets have wide tracks.
+/// Connects the pads of each of `n_nets` nets. `is_power` says which nets have wide tracks.
 pub(crate) fn route(
     outline: &Outline,
     pads: &[PadCopper],

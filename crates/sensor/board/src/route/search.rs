@@ -1,4 +1,4 @@
-//! A*: the cheapest way from one piece of a net to any other.
+//! A*: the cheapest path from one piece of a net to any other.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,21 +7,21 @@ use super::cells::{Cells, too_close_for_a_via};
 use super::grid::{Fixed, Grid, VIA, track_kind};
 use super::net::{Net, Spot};
 
-/// Costs: a step along an axis is 10, which is 0.1 mm.
+/// Costs: a step of 0.1 mm along an axis costs 10.
 const STRAIGHT: u32 = 10;
 const DIAGONAL: u32 = 14;
-/// What a bend of 45 degrees costs. Sharper bends are not made.
+/// Cost of a bend of 45°. Sharper bends are not allowed.
 const BEND: u32 = 12;
-/// What a bend costs so close to copper of the net itself that a stub is left.
+/// Cost of a bend so close to copper of the same net that a stub is left.
 const STUB: u32 = 400;
-/// What a via costs.
+/// Cost of a via.
 const THROUGH: u32 = 160;
-/// What a step through another net's room costs, and how much more for each time that it was fought
-/// over.
+/// Cost of a step through an area of another net, and the additional cost for each earlier crossing
+/// there.
 const CROSSING: u32 = 40;
 const FIGHT: u32 = 6;
 
-/// The eight directions, turning to the left.
+/// The eight directions, counter-clockwise.
 const DIRECTIONS: [(i64, i64); 8] = [
     (1, 0),
     (1, 1),
@@ -36,28 +36,28 @@ const DIRECTIONS: [(i64, i64); 8] = [
 const NONE: usize = 8;
 const WAYS: usize = 9;
 
-/// What a search may look at.
+/// The data of a search.
 pub(super) struct Search<'a> {
     pub(super) grid: &'a Grid,
     pub(super) fixed: &'a Fixed,
-    /// Without the net's own paths.
+    /// The cells, without the net's own paths.
     pub(super) cells: &'a Cells,
-    /// Whether tracks of other nets may be crossed, at a price.
+    /// Whether tracks of other nets may be crossed, at a cost.
     pub(super) may_cross: bool,
 }
 
-/// Memory of searches, kept from one to the next.
+/// Memory that searches reuse.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     costs: Vec<u32>,
-    /// States whose costs have been set: all others still have the largest.
+    /// States with a cost. All other states have the largest cost.
     touched: Vec<usize>,
-    /// The way that a state was reached from, as an index of a state.
+    /// The state that each state was reached from, by index.
     from: Vec<u32>,
     is_target: Vec<bool>,
     no_via: Vec<bool>,
-    /// By layer and node: whether copper of the net itself is so near that a bend leaves a stub which
-    /// is shorter than a track is wide.
+    /// By layer and node: whether copper of the same net is so near that a bend leaves a stub
+    /// shorter than a track's width.
     near_own: Vec<bool>,
 }
 
@@ -67,7 +67,7 @@ struct Targets {
 }
 
 impl Search<'_> {
-    /// The cheapest way from `starts` to `targets`, and its cost without what crossings cost.
+    /// The cheapest path from `starts` to `targets`, and its cost, crossings included.
     pub(super) fn way(
         &self,
         net: &Net,
@@ -121,7 +121,7 @@ impl Search<'_> {
         None
     }
 
-    /// Clears what the last search left, and marks where vias and bends are not wanted.
+    /// Clears the last search, and marks where vias and bends are unwanted.
     fn prepare(&self, net: &Net, own: [&[Spot]; 2], scratch: &mut Scratch) {
         let nodes = self.grid.len();
         for state in scratch.touched.drain(..) {
@@ -182,7 +182,7 @@ impl Search<'_> {
         }
     }
 
-    /// What being there costs beside the way itself; `None` where it cannot be.
+    /// Cost of being there, in addition to the path itself. `None` if it is not allowed.
     fn price(&self, kind: usize, node: usize, net: &Net) -> Option<u32> {
         if !self.fixed.allows(kind, node, net.number) {
             return None;
@@ -209,7 +209,7 @@ impl Search<'_> {
         found
     }
 
-    /// The least that the way to the box about the targets can cost.
+    /// A lower bound for the cost of the path to the box around the targets.
     fn ahead(&self, targets: &Targets, node: usize) -> u32 {
         let columns = self.grid.columns as i64;
         let (x, y) = (node as i64 % columns, node as i64 / columns);

@@ -1,8 +1,8 @@
-//! Nets routed once more with all others in place: what others left behind is no detour any more.
+//! Routes nets once more with all others in place, so that no detour around removed tracks remains.
 
 use super::router::Router;
 
-/// How often all nets are routed again at most.
+/// Largest number of rounds in which all nets are routed again.
 const ROUNDS: usize = 4;
 
 pub(super) fn tidy(router: &mut Router) {
@@ -17,8 +17,8 @@ pub(super) fn tidy(router: &mut Router) {
     }
 }
 
-/// Routes a net again without crossing others; keeps the way that is cheaper, and says whether that
-/// is the new one.
+/// Routes a net again without crossings and keeps the cheaper result. Returns whether that is the
+/// new one.
 fn again(router: &mut Router, net: usize) -> bool {
     let before = std::mem::take(&mut router.nets[net].paths);
     let cost: u32 = before.iter().map(|path| path.cost).sum();

@@ -1,4 +1,4 @@
-//! The copper of a board file: shapes with nets, their exact distances, and what hangs together.
+//! The copper of a board file: shapes with nets, their exact distances, and what is connected.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::expression::Expression;
 
 type Point = [f64; 2];
 
-/// A shape: everything within `radius` of a rectangle or of a line.
+/// A shape: all points within `radius` of a rectangle or of a line segment.
 #[derive(Clone, Debug)]
 enum Form {
     Rect { center: Point, half: Point },
@@ -17,7 +17,7 @@ enum Form {
 #[derive(Clone, Debug)]
 pub(crate) struct Copper {
     pub(crate) net: String,
-    /// The pad that it is, such as `U1.3`; empty for tracks and vias.
+    /// The name of the pad, such as `U1.3`; empty for tracks and vias.
     pub(crate) pad: String,
     on_top: bool,
     on_bottom: bool,
@@ -105,8 +105,8 @@ impl Written {
         }
     }
 
-    /// Nets whose pads do not all hang together by tracks and vias (the pour left out), and nets
-    /// that touch each other.
+    /// Nets whose pads are not all connected by tracks and vias (without the pour), and nets that
+    /// touch each other.
     pub(crate) fn open_and_shorted(&self) -> Vec<String> {
         let mut piece: Vec<usize> = (0..self.copper.len()).collect();
         fn root(piece: &[usize], mut of: usize) -> usize {
@@ -169,7 +169,7 @@ impl Written {
         found
     }
 
-    /// Copper that is nearer to the board's edge than `least` mm.
+    /// Copper whose distance to the board's edge is less than `least`, mm.
     pub(crate) fn near_edge(&self, least: f64) -> Vec<String> {
         let mut found = Vec::new();
         for (from, to) in &self.outline {
@@ -294,7 +294,7 @@ fn sides(center: Point, half: Point) -> [(Point, Point); 4] {
     [0, 1, 2, 3].map(|side| (corners[side], corners[(side + 1) % 4]))
 }
 
-/// Distance of two shapes; 0 or less where they touch.
+/// Distance of two shapes; 0 or less if they touch.
 fn distance(one: &Form, two: &Form) -> f64 {
     match (one, two) {
         (
@@ -331,7 +331,7 @@ fn distance(one: &Form, two: &Form) -> f64 {
     }
 }
 
-/// A box about all that is within 1 mm of a shape.
+/// A box around all points within 1 mm of a shape.
 fn reach(form: &Form) -> (Point, Point) {
     let around = |one: Point, two: Point, by: Point| {
         (

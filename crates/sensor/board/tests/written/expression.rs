@@ -57,7 +57,7 @@ impl Expression {
         self.word(index).parse().unwrap_or(0.0)
     }
 
-    /// The lists in it that begin with a word.
+    /// The lists in it that begin with the word `name`.
     pub(crate) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Self> {
         self.items().iter().filter(move |item| item.word(0) == name)
     }

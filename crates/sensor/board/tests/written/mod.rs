@@ -1,5 +1,4 @@
-//! A written board, read back from its text, and what must hold of its copper. Nothing here is
-//! shared with what writes it.
+//! A written board, read back from its text. It shares no code with the crate that writes it.
 
 #![allow(dead_code, unused_imports)] // each test program uses a part of it
 

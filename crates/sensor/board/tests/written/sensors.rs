@@ -1,4 +1,4 @@
-//! Descriptions for tests.
+//! Sensor descriptions for tests.
 
 use std::fmt::Write as _;
 
@@ -25,13 +25,13 @@ pub(crate) fn sensor(size_mm: [f64; 2], taxels: &[(String, f64, f64, u8, u8)]) -
     Sensor::parse("test.toml", &text, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap()
 }
 
-/// Taxels in rows along x, eight to a switch from 0x70 on, under a gel that reaches `rim_mm` beyond
-/// them.
+/// Taxels in rows along x, eight for each switch from 0x70 on, under a gel that extends `rim_mm`
+/// beyond them.
 pub(crate) fn grid_of(columns: u8, rows: u8, pitch_mm: f64, rim_mm: f64) -> Sensor {
     let at = |index: u8, count: u8| (f64::from(index) - 0.5 * f64::from(count - 1)) * pitch_mm;
     let taxels: Vec<_> = (0..columns * rows)
         .map(|index| {
-            // Eight of one switch are neighbours.
+            // The eight taxels of a switch are neighbours.
             let (column, row) = (index / rows, index % rows);
             let at = (at(column, columns), at(row, rows));
             (format!("t{index}"), at.0, at.1, 0x70 + index / 8, index % 8)

@@ -1,4 +1,4 @@
-//! The report and the data sheet.
+//! The report and the data sheet, as HTML pages.
 
 mod parts;
 mod plots;
@@ -21,7 +21,7 @@ pub use report::report;
 /// Writes `report.html` and `datasheet.html` into a folder.
 ///
 /// # Errors
-/// A folder or a file that cannot be written.
+/// The folder or a file cannot be written.
 pub fn write_pages(
     folder: &Path,
     found: &Characterization,

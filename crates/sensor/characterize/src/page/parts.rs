@@ -1,4 +1,4 @@
-//! What both pages are put together from.
+//! Parts that both pages use.
 
 use twintac_plot::page::{Badge, Block, Cell, Figure, Row, Table};
 use twintac_recording::{Provenance, Recording};
@@ -8,7 +8,7 @@ use super::plots::Plot;
 use crate::Characterization;
 use crate::recorded::Recorded;
 
-/// Plots beside each other; all figures of a page have one provenance.
+/// Plots side by side. All figures of a page have one provenance.
 pub(super) fn figures(plots: Vec<Option<Plot>>, provenance: Provenance) -> Block {
     let figure = |(scene, caption)| Figure {
         scene,
@@ -35,7 +35,7 @@ pub(super) fn table<const N: usize>(
     })
 }
 
-/// What the reader must know first.
+/// Warnings at the top of a page.
 pub(super) fn warnings(found: &Characterization) -> Vec<String> {
     let mut warnings = Vec::new();
     if found.provenance != Provenance::Real {
@@ -46,7 +46,7 @@ pub(super) fn warnings(found: &Characterization) -> Vec<String> {
     }
     if found.n_leaps > 0 {
         warnings.push(format!(
-            "{} times five seconds of a taxel are left out of its noise, zero and temperature: its readings leap there, as if something touched it.",
+            "{} intervals of five seconds are left out of the noise, zero and temperature of their taxel: its readings jump there, as if something touched it.",
             found.n_leaps
         ));
     }

@@ -1,4 +1,5 @@
-//! The plots, in the order of the paper's: time, small and large force, sensitivity; then what it does not show.
+//! The plots, in the paper's order: time, small and large force, sensitivity. Then the plots that
+//! the paper does not have.
 
 use twintac_plot::{Anchor, Bar, Bars, Ink, Panel, Panels, SMALL, Scene, Series, text_width, viridis};
 use twintac_recording::{Control, Recording};
@@ -13,10 +14,10 @@ use crate::{Characterization, CrossTalk};
 /// A plot with its caption.
 pub(super) type Plot = (Scene, String);
 
-/// Presses in the plot over time.
+/// Largest number of presses in the plot over time.
 const MOST_SHOWN: usize = 8;
 
-/// Longest of them, s.
+/// Longest press in the plot over time, s.
 const LONGEST_SHOWN_S: f64 = 8.0;
 
 fn line(name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64) -> Series {
@@ -56,7 +57,8 @@ fn panels(title: &str, x_label: &str, panels: Vec<Panel>) -> Scene {
     .scene()
 }
 
-/// Force, N, and the reading of a taxel, kPa, over time, s, in some frames; times count from `zero_s`.
+/// Force, N, and reading of a taxel, kPa, over time, s, in a range of frames. Times count from
+/// `zero_s`.
 fn courses(
     press: &Recorded<'_>,
     taxel: usize,
@@ -81,7 +83,7 @@ fn force_and_reading(title: &str, name: &str, [force, reading]: [Vec<[f64; 2]>; 
     panels(title, "time, s", vec![above, below])
 }
 
-/// Force and reading over time, at several amplitudes and speeds of one taxel, one press after the other.
+/// Force and reading over time for one taxel, press after press, at several amplitudes and speeds.
 pub(super) fn over_time(recording: &Recording, recorded: &[Recorded<'_>]) -> Option<Plot> {
     let touched_s = |press: &Recorded<'_>| {
         let end = press.phases.unloading.end.min(press.press.time_s.len() - 1);
@@ -94,7 +96,8 @@ pub(super) fn over_time(recording: &Recording, recorded: &[Recorded<'_>]) -> Opt
         .rev()
         .max_by_key(|&taxel| of_taxel(taxel).count())
         .filter(|&taxel| of_taxel(taxel).next().is_some())?;
-    // The most different: evenly chosen by how fast they load, shown as they were recorded.
+    // Sorts presses by their loading rate and takes evenly spaced ones, so that they differ most;
+    // shows them in the order of recording.
     let mut order: Vec<(usize, &Recorded<'_>)> = of_taxel(taxel).enumerate().collect();
     let rate =
         |press: &Recorded<'_>| press.peak_n() / duration_s(press.press, &press.phases.loading).max(1e-3);
@@ -120,13 +123,13 @@ pub(super) fn over_time(recording: &Recording, recorded: &[Recorded<'_>]) -> Opt
     }
     let name = &recording.taxels[taxel];
     let caption = format!(
-        "Force on the gel and what taxel {name} reads, in {} presses of various amplitude and speed, set one behind the other.",
+        "Force on the gel and reading of taxel {name}, in {} presses of various amplitude and speed, one after the other.",
         chosen.len()
     );
     Some((force_and_reading("Response over time", name, all), caption))
 }
 
-/// The smallest known step of force, with the means that tell it.
+/// The smallest known step of force, with the two means that it is computed from.
 pub(super) fn smallest_step(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
     let step = found.smallest_step().or(found.steps.found()?.first())?;
     let press = recorded.iter().find(|press| press.press.name == step.press)?;
@@ -193,14 +196,14 @@ pub(super) fn largest_force(
         courses(press, taxel, 0..n, 0.0),
     );
     let caption = format!(
-        "The largest force in the data, {} N, and the taxel that reads most then, {}. Nothing is known beyond.",
+        "The largest force in the data, {} N, and the taxel with the largest reading at it, {}. Larger forces were not measured.",
         number(range.force_n, 3),
         range.taxel
     );
     Some((scene, caption))
 }
 
-/// Responses of all taxels, and their mean line.
+/// Responses of all taxels, and the mean line.
 pub(super) fn responses(found: &Characterization) -> Option<Plot> {
     let (taxels, overall) = (found.sensitivity.found()?, found.overall.found()?);
     let common_n = taxels
@@ -238,7 +241,7 @@ pub(super) fn responses(found: &Characterization) -> Option<Plot> {
     Some((scene, caption))
 }
 
-/// How far responses are from their lines.
+/// Deviation of each response from its line.
 pub(super) fn linearity(found: &Characterization) -> Option<Plot> {
     let taxels = found.sensitivity.found()?;
     let limit = found.options.linear_percent;
@@ -268,13 +271,13 @@ pub(super) fn linearity(found: &Characterization) -> Option<Plot> {
         vec![panel("% of the range’s end", series)],
     );
     let caption = format!(
-        "Response less the taxel’s own line, in % of the response at the end of its linear range: the range ends where no line keeps within {} %.",
+        "Response minus the taxel’s own line, in % of the response at the end of its linear range: the range ends where no line stays within {} %.",
         limit
     );
     Some((scene, caption))
 }
 
-/// Bars of one figure a taxel; none without figures.
+/// One figure for each taxel as bars; `None` without figures.
 pub(super) fn bars(
     title: &str,
     x_label: &str,
@@ -296,7 +299,7 @@ pub(super) fn bars(
     (!bars.bars.is_empty()).then(|| (bars.scene(), caption.to_owned()))
 }
 
-/// The widest loop.
+/// The widest hysteresis loop.
 pub(super) fn hysteresis(found: &Characterization) -> Option<Plot> {
     let taxels = found.hysteresis.found()?;
     let widest = taxels
@@ -316,7 +319,7 @@ pub(super) fn hysteresis(found: &Characterization) -> Option<Plot> {
     Some((scene, caption))
 }
 
-/// A fast press, force and reading in % of their largest.
+/// A fast press: force and reading in % of their largest value.
 pub(super) fn rise(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
     let rise = found.rise_time.found()?;
     let press = recorded.iter().find(|press| press.press.name == rise.example)?;
@@ -341,13 +344,13 @@ pub(super) fn rise(found: &Characterization, recorded: &[Recorded<'_>]) -> Optio
     ];
     let scene = panels("Rise", "time, s", vec![panel("% of the largest", series)]);
     let caption = format!(
-        "A fast press. Frames come every {} s: a shorter rise is not seen.",
+        "A fast press. The time between frames is {} s: a shorter rise time cannot be measured.",
         number(rise.frame_s, 2)
     );
     Some((scene, caption))
 }
 
-/// A long hold, in % of its beginning.
+/// A long hold, in % of its first window.
 pub(super) fn creep(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
     let creep = found.creep.found()?.first()?;
     let press = recorded.iter().find(|press| press.press.name == creep.press)?;
@@ -380,7 +383,7 @@ pub(super) fn creep(found: &Characterization, recorded: &[Recorded<'_>]) -> Opti
     ];
     let scene = panels("Creep", "time held, s", vec![panel("change, %", series)]);
     let caption = format!(
-        "A hold at one depth, above taxel {}: the gel relaxes, and force and pressure with it; what their ratio changes by is creep.",
+        "A hold at one depth, above taxel {}: the gel relaxes, and force and pressure with it; the change of their ratio is creep.",
         creep.taxel
     );
     Some((scene, caption))
@@ -391,7 +394,7 @@ pub(super) fn drift(found: &Characterization) -> Option<Plot> {
     let taxels = found.temperature_drift.found()?;
     let series = (0..).zip(taxels).map(|(index, taxel)| {
         let (name, course) = (&taxel.taxel, taxel.course.clone());
-        // There are more taxels than colours that tell them apart.
+        // There are more taxels than distinguishable colours.
         match index < 6 {
             true => line(name, course, Ink::Series(index), 1.25),
             false => dashed(name, course, Ink::Series(index)),
@@ -402,11 +405,11 @@ pub(super) fn drift(found: &Characterization) -> Option<Plot> {
         "temperature, °C",
         vec![panel("unloaded pressure, kPa", series.collect())],
     );
-    let caption = "Unloaded pressure against the barometers' own temperature, from where each taxel's line begins; what drifts with time alone is in it.";
+    let caption = "Unloaded pressure against the barometers' own temperature, relative to the start of each taxel's line; drift with time is included.";
     Some((scene, caption.to_owned()))
 }
 
-/// What each taxel reads while each is pressed.
+/// Readings of all taxels while each one is pressed.
 pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
     const CELL: f64 = 36.0;
     let widest = |names: &[String]| {
@@ -448,7 +451,7 @@ pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
         Ink::Muted,
     );
     let caption = format!(
-        "Reading of each taxel in % of that of the pressed one, at {} N. In a gel a load spreads: it is no fault.",
+        "Reading of each taxel in % of that of the pressed one, at {} N. A load spreads in the gel, so cross-talk is not a fault.",
         number(talk.force_n, 2)
     );
     (scene, caption)

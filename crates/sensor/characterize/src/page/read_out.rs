@@ -1,4 +1,4 @@
-//! What the read-out does, as rows of the data sheet.
+//! Figures of the read-out, as rows of the data sheet.
 
 use super::words::{if_found, number, or_not, row};
 use crate::{Characterization, Fate};
@@ -26,7 +26,7 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
             }),
             if_found(&found.timing, |timing| {
                 let (all, gaps) = (timing.n_intervals, timing.n_gaps);
-                format!("mean and standard deviation of {all} times between frames, without {gaps} gaps")
+                format!("mean and standard deviation of {all} intervals between frames, without {gaps} gaps")
             }),
         ),
         row(
@@ -48,7 +48,7 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
             match silent.is_empty() {
                 true => format!("of {}", found.conditions.len()),
                 false => format!(
-                    "of {}; nothing came of {}",
+                    "of {}; no readings of {}",
                     found.conditions.len(),
                     silent.join(", ")
                 ),
@@ -57,7 +57,7 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
     ]
 }
 
-/// A jitter that is more than the rounding of times.
+/// The jitter, or 0 if it is so small that rounding of the time stamps explains it.
 fn above_rounding(jitter: f64) -> f64 {
     if jitter < 1e-9 { 0.0 } else { jitter }
 }

@@ -11,10 +11,10 @@ use super::words::{number, or_not};
 use crate::recorded::Recorded;
 use crate::{Characterization, Finding};
 
-/// How descriptions of the TwinTac paper's sensor name their source.
+/// The source that descriptions of the TwinTac paper's sensor name.
 const PAPER: &str = "arXiv 2509.10063";
 
-/// Everything that was found, with plots, definitions, and what was not found.
+/// The report page: all figures, plots and definitions, and the figures that were not found.
 #[must_use]
 pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
     let recorded = parts::recorded(found, recording, sensor);
@@ -76,7 +76,7 @@ fn range(
     blocks.extend(step_table(found));
     if sensor.source.contains(PAPER) {
         let text = format!(
-            "For its own sensor the TwinTac paper ({PAPER}) reports 7.24 kPa/N with a round indenter 25 mm wide, a step of 0.007 N seen, and 212 N \
+            "For its own sensor the TwinTac paper ({PAPER}) reports 7.24 kPa/N with a round indenter 25 mm wide, a detected step of 0.007 N, and 212 N \
              as the largest force."
         );
         blocks.push(Block::Text(text.into()));
@@ -93,7 +93,7 @@ fn repeat_plots(found: &Characterization) -> Vec<Option<Plot>> {
             "Hysteresis",
             "% of full scale",
             loops.map(|taxel| (taxel.taxel.clone(), taxel.percent)),
-            "Largest difference of unloading from loading at the same force.",
+            "Largest difference between unloading and loading at the same force.",
         ),
         plots::bars(
             "Repeatability",
@@ -117,7 +117,7 @@ fn noise_bars(found: &Characterization) -> Option<Plot> {
 fn lead(found: &Characterization) -> String {
     if found.n_presses == 0 {
         return format!(
-            "{} frames of readings alone, in which nothing should touch the sensor: what takes a press is not given.",
+            "{} frames of readings alone, in which nothing should touch the sensor: figures that require presses are not given.",
             found.n_frames_alone
         );
     }
@@ -224,7 +224,7 @@ fn step_table(found: &Characterization) -> Option<Block> {
     ];
     let caption = format!(
         "Steps of known force. z is the step over the standard deviation of one reading, and of the change of the mean over {} s while nothing happens; \
-         detected from z = {} of the mean on.",
+         a step with z = {} or more of the mean is detected.",
         found.options.window_s, found.options.sigmas
     );
     Some(table(caption, head, rows.collect()))
@@ -269,7 +269,7 @@ fn definitions(found: &Characterization) -> Vec<Block> {
         row(
             "linear range",
             format!(
-                "the longest from no force on in which no point is farther from the range’s own line than {} % of the response at its end (independent \
+                "the longest range from zero force in which no point is farther from the range’s own line than {} % of the response at its end (independent \
                  linearity, IEC 61298-2)",
                 words(options.linear_percent)
             ),
@@ -279,20 +279,20 @@ fn definitions(found: &Characterization) -> Vec<Block> {
         row(
             "detected step",
             format!(
-                "the mean over {} s after a known step, less that before it, is {} or more standard deviations of such a difference while nothing happens",
+                "the mean over {} s after a known step, minus that before it, is {} or more standard deviations of such a difference while nothing happens",
                 words(options.window_s),
                 words(options.sigmas)
             ),
         ),
-        row("hysteresis", "largest difference of unloading from loading at the same force, in % of the response at the largest force (ISA-51.1)".into()),
+        row("hysteresis", "largest difference between unloading and loading at the same force, in % of the response at the largest force (ISA-51.1)".into()),
         row(
             "repeatability",
-            "largest standard deviation of readings at the same force in three or more slow presses alike, in % of the response at their largest force".into(),
+            "largest standard deviation of readings at the same force in three or more equal slow presses, in % of the response at their largest force".into(),
         ),
-        row("rise time", format!("from 10 to 90 % of the largest reading, in presses whose force rises so in {} s or less", words(options.fast_s))),
-        row("creep", "change of reading over force in a hold (ISA-37.1, for a load that a robot cannot keep constant)".into()),
-        row("cross-talk", "reading of another taxel over that of the pressed one, at the same force".into()),
-        row("return to zero", "unloaded reading after a press, less that before".into()),
+        row("rise time", format!("from 10 to 90 % of the largest reading, in presses whose force rises from 10 to 90 % in {} s or less", words(options.fast_s))),
+        row("creep", "change of the ratio of reading to force in a hold (ISA-37.1, for a load that a robot cannot keep constant)".into()),
+        row("cross-talk", "ratio of the reading of another taxel to that of the pressed one, at the same force".into()),
+        row("return to zero", "unloaded reading after a press, minus that before".into()),
         row("zero over time", "slope of the least-squares line of unloaded readings over time, averaged over five seconds, in the longest log".into()),
         row("drift with temperature", "slope of the least-squares line of unloaded readings over the chips’ temperature, both averaged over five seconds".into()),
     ];
@@ -312,7 +312,7 @@ mod tests {
         let text = include_str!("../../../../../sensors/phystac.toml");
         let mut sensor = Sensor::parse("phystac.toml", text, &|name| std::fs::read(name)).unwrap();
         sensor.taxels.truncate(2);
-        sensor.taxels[0].position_mm = glam::DVec3::ZERO; // where the press is
+        sensor.taxels[0].position_mm = glam::DVec3::ZERO; // the press is there
         let recording = Recording {
             sensor: sensor.name.clone(),
             provenance: Provenance::Emulated,
@@ -345,7 +345,7 @@ mod tests {
         let silent_found = characterize(&silent, &[], &sensor, &CharacterizeOptions::default()).unwrap();
         let page = report(&silent_found, &silent, &sensor).render();
         let n = silent.presses[0].time_s.len();
-        let said = format!("nothing came of {} in 61 of {n} frames", silent.taxels[1]);
+        let said = format!("no readings of {} in 61 of {n} frames", silent.taxels[1]);
         assert!(page.contains("0 dead, 0 stuck, 0 late, 1 intermittent") && page.contains(&said));
         assert!(!page.contains("NaN"));
         sensor.source = "measured by its maker".to_owned();

@@ -60,7 +60,7 @@ impl Characterization {
     }
 }
 
-/// What the description says of the sensor.
+/// Rows from the sensor's description.
 fn described(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
     let readout = &sensor.readout;
     vec![
@@ -85,7 +85,7 @@ fn described(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
     ]
 }
 
-/// The response to a force.
+/// Rows on the response to force.
 fn response(found: &Characterization) -> Vec<[String; 3]> {
     vec![
         row(
@@ -126,13 +126,16 @@ fn response(found: &Characterization) -> Vec<[String; 3]> {
                 )
             }),
             if_found(&found.range, |range| {
-                format!("taxel {} reads most; nothing is known beyond", range.taxel)
+                format!(
+                    "taxel {} has the largest reading; larger forces were not measured",
+                    range.taxel
+                )
             }),
         ),
     ]
 }
 
-/// The smallest force that is seen, and how many times more the largest is.
+/// Rows on the smallest force, and on the ratio of the largest to it.
 fn smallest(found: &Characterization) -> Vec<[String; 3]> {
     let sigmas = found.options.sigmas;
     vec![
@@ -178,7 +181,7 @@ fn smallest(found: &Characterization) -> Vec<[String; 3]> {
     ]
 }
 
-/// How alike readings of the same force are.
+/// Rows on repeatability of readings at the same force.
 fn repeats(found: &Characterization) -> Vec<[String; 3]> {
     vec![
         row(
@@ -189,7 +192,7 @@ fn repeats(found: &Characterization) -> Vec<[String; 3]> {
                     span(taxels.iter().map(|taxel| taxel.percent), 2)
                 )
             }),
-            "largest difference of unloading from loading at the same force, by taxel".into(),
+            "largest difference between unloading and loading at the same force, by taxel".into(),
         ),
         row(
             "Repeatability",
@@ -204,7 +207,7 @@ fn repeats(found: &Characterization) -> Vec<[String; 3]> {
     ]
 }
 
-/// What time does.
+/// Rows on time: rise time, creep, drift.
 fn over_time(found: &Characterization) -> Vec<[String; 3]> {
     vec![
         row(
@@ -240,7 +243,7 @@ fn over_time(found: &Characterization) -> Vec<[String; 3]> {
     ]
 }
 
-/// What else a taxel reads than the force above it.
+/// Rows on effects other than the force above a taxel.
 fn beside(found: &Characterization) -> Vec<[String; 3]> {
     vec![
         row(
@@ -269,7 +272,7 @@ fn beside(found: &Characterization) -> Vec<[String; 3]> {
             }),
             if_found(&found.zero, |taxels| {
                 format!(
-                    "slope over {} h, by taxel; weather and temperature are in it",
+                    "slope over {} h, by taxel; includes weather and temperature",
                     number(taxels[0].hours, 2)
                 )
             }),
@@ -284,7 +287,10 @@ fn beside(found: &Characterization) -> Vec<[String; 3]> {
             }),
             if_found(&found.temperature_drift, |taxels| {
                 let left = taxels.iter().map(|taxel| taxel.remaining_kpa);
-                format!("unloaded, by taxel; {} kPa are left without it", span(left, 2))
+                format!(
+                    "unloaded, by taxel; {} kPa remain after compensation",
+                    span(left, 2)
+                )
             }),
         ),
     ]

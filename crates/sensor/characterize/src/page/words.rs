@@ -2,10 +2,10 @@
 
 use crate::Finding;
 
-/// Begins the words of a figure that was not found.
+/// The first words of the text for a missing figure.
 pub(super) const NOT_GIVEN: &str = "not given";
 
-/// A number with so many significant digits, and a true minus sign.
+/// A number with `digits` significant digits and a typographic minus sign.
 pub(super) fn number(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -20,7 +20,7 @@ pub(super) fn number(value: f64, digits: i32) -> String {
     format!("{rounded:.decimals$}").replace('-', "−")
 }
 
-/// The smallest and the largest as `a to b`, or one of them where they look alike.
+/// The smallest and the largest value as `a to b`, or a single number if both have the same text.
 pub(super) fn span(values: impl Iterator<Item = f64> + Clone, digits: i32) -> String {
     let low = number(values.clone().fold(f64::INFINITY, f64::min), digits);
     let high = number(values.fold(f64::NEG_INFINITY, f64::max), digits);
@@ -31,7 +31,7 @@ pub(super) fn span(values: impl Iterator<Item = f64> + Clone, digits: i32) -> St
     }
 }
 
-/// The finding in words; a missing one says so.
+/// The text of a figure; for a missing one, a text that says so.
 pub(super) fn or_not<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) -> String {
     match finding {
         Finding::Found(figure) => words(figure),
@@ -39,12 +39,12 @@ pub(super) fn or_not<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) 
     }
 }
 
-/// The finding in words; nothing of a missing one.
+/// The text of a figure; empty for a missing one.
 pub(super) fn if_found<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) -> String {
     finding.found().map_or(String::new(), words)
 }
 
-/// Name, value and condition of a figure; one that is not given has no condition.
+/// Name, value and condition of a figure. A figure that is not given has no condition.
 pub(super) fn row(name: &str, value: String, condition: String) -> [String; 3] {
     let is_missing = value.starts_with(NOT_GIVEN);
     let condition = if is_missing { String::new() } else { condition };

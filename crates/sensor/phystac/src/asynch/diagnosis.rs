@@ -1,4 +1,4 @@
-//! What a failed transaction says: of one taxel, of a switch, or of the bus.
+//! What a failed transaction means: a fault of one taxel, of a switch, or of the bus.
 
 use embedded_hal_async::i2c::{Error as _, I2c};
 
@@ -8,7 +8,8 @@ use crate::error::Error;
 use crate::fault::Fault;
 
 impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
-    /// What an error met with one channel open says of its taxel, unless it says more.
+    /// The fault of a taxel that follows from an error with only its channel open. An error that
+    /// concerns more than this taxel is returned as an error.
     pub(super) async fn fault_of(
         &mut self,
         taxel: Taxel,
@@ -16,7 +17,7 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
     ) -> Result<Fault, Error<I2C::Error>> {
         match error {
             Error::BarometerMissing => {
-                // If the channel is closed, nobody answers either.
+                // If the channel is closed, nothing acknowledges either.
                 if let Some((switch, channel)) = taxel.place.behind {
                     let verified = self.switch(switch).verify(channel).await;
                     self.diagnose(Some(taxel), verified).await?;
@@ -35,9 +36,10 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         }
     }
 
-    /// Tells a bus that failed from one that hangs: whether it works with all channels closed.
+    /// Distinguishes a single failed transaction from a hung bus: the bus works if transactions
+    /// succeed with all channels closed.
     ///
-    /// `taxel` is the one whose channel was open, if it was one alone.
+    /// `taxel` is the taxel whose channel was open, if only one was.
     pub(super) async fn diagnose<T>(
         &mut self,
         taxel: Option<Taxel>,
@@ -58,7 +60,8 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         Err(Error::BusHung { taxel, source })
     }
 
-    /// Whether transactions go through with all channels closed; without a switch: at all, whoever acknowledges.
+    /// Whether transactions succeed with all channels closed. Without a switch: whether any
+    /// transaction succeeds, acknowledged or not.
     async fn is_alive(&mut self) -> bool {
         if self.settings.wiring.switches().next().is_some() {
             return self.close().await.is_ok();

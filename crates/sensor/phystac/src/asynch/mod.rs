@@ -1,6 +1,8 @@
-//! The drivers over [`embedded_hal_async`]. Those at the root of the crate are these, over [`embedded_hal`].
+//! The drivers over [`embedded_hal_async`]. The drivers at the root of the crate are the same ones
+//! over [`embedded_hal`].
 //!
-//! Futures may be dropped at any point: no driver trusts what it has not seen end.
+//! A future may be dropped at any point: the next call starts over if the last operation did not
+//! end.
 
 mod diagnosis;
 mod phystac;

@@ -1,4 +1,4 @@
-//! The sensor: all barometers at once.
+//! The sensor: all barometers of one bus.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -16,61 +16,64 @@ use crate::settings::Settings;
 use crate::taxels::Taxels;
 use crate::wiring::Place;
 
-/// Up to `N` barometers on a bus, behind switches or not, read as frames.
+/// Up to `N` barometers on an I²C bus, with or without switches, read as frames.
 ///
-/// A frame is triggered for all barometers at once, with one write for all that need the same bytes, so that its samples are of one moment; then
-/// each is asked, through its own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no
-/// other. One that failed in a frame is switched on anew before the next trigger, and left out of the frame if it is still converting or fails
-/// again: its sample would be of an earlier moment than the frame says.
+/// All barometers are triggered at the same moment: one write for all that take the same bytes at
+/// the same address. Each barometer is then polled and read through its own channel. A failure of
+/// one taxel is a [`Fault`] of that taxel; the other taxels have their values. A taxel that failed
+/// is started again before the next trigger. It is left out of that frame if it still converts or
+/// fails again, because its sample would be older than the frame.
 ///
-/// Chips that convert temperature apart do so in every sixteenth frame, after the pressures, and between count with the last one.
+/// Chips that convert temperature separately do so in every sixteenth frame, after the pressures.
+/// The frames between use the last temperature.
 ///
-/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switches obey and that nobody answers at the
-/// barometers' addresses, and looks into each channel before any broadcast.
+/// After an [`Error`] the next call starts over: it closes all channels, checks that the switches
+/// take their masks and that nothing else answers at the barometers' addresses, and opens each
+/// channel alone before any write to several channels.
 #[derive(Debug)]
 pub struct PhysTac<I2C, D, C, const N: usize> {
     i2c: I2C,
     delay: D,
     clock: C,
     pub(super) settings: Settings<N>,
-    /// Of chips that are switched on.
+    /// The drivers of the chips that were started.
     drivers: [Option<AnyDriver>; N],
-    /// Switches that may have channels open.
+    /// Which switches may have channels open.
     open: [bool; 8],
-    /// Whether the last operation on the bus came to its end.
+    /// Whether the last operation on the bus ended normally.
     is_ready: bool,
-    /// When the frame under way was triggered.
+    /// When the frame in progress was triggered, µs of the clock. `None`: no frame is in progress.
     triggered_us: Option<u64>,
-    /// Frames since the sensor was switched on.
+    /// Number of frames read since the sensor was created.
     frames: u32,
-    /// Taxels that failed: asked before the next trigger.
+    /// Taxels that failed. They are asked before the next trigger.
     doubtful: Taxels,
-    /// Why taxels have no part in the frame under way.
+    /// Why taxels are left out of the frame in progress.
     left_out: [Option<Fault>; N],
-    /// The taxel with whose channel open the bus hung last.
+    /// The taxel whose channel alone was open when the bus hung last.
     pub(super) suspect: Option<usize>,
-    /// Taxels whose channel hung the bus twice running.
+    /// Taxels whose channel hung the bus twice in a row.
     pub(super) isolated: Taxels,
-    /// When taxels that are isolated are looked into again.
+    /// When each isolated taxel is tried again.
     retries: [Retry; N],
 }
 
-/// When a channel that hung the bus is looked into again.
+/// When a channel that hung the bus is tried again.
 #[derive(Clone, Copy, Debug)]
 struct Retry {
-    /// When, µs of the clock; not known yet if `None`.
+    /// Time of the next try, µs of the clock. `None`: not set yet.
     at_us: Option<u64>,
-    /// How long it is closed before, µs.
+    /// How long the channel stays closed before that try, µs.
     wait_us: u64,
 }
 
-/// The longest that a channel is closed, over the first time.
+/// The longest time that a channel stays closed, as a multiple of the first.
 const LONGEST_WAIT: u64 = 64;
 
-/// In how many frames temperature is converted once, where it is converted apart.
+/// Number of frames for each temperature conversion, for chips that convert temperature separately.
 pub(crate) const FRAMES_PER_TEMPERATURE: u32 = 16;
 
-/// A taxel and where it is.
+/// A taxel and its location.
 #[derive(Clone, Copy)]
 pub(super) struct Taxel {
     pub(super) index: usize,
@@ -78,7 +81,7 @@ pub(super) struct Taxel {
 }
 
 impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
-    /// The sensor on a bus. Nothing is sent yet.
+    /// A sensor on a bus. Sends nothing yet.
     pub const fn new(i2c: I2C, delay: D, clock: C, settings: Settings<N>) -> Self {
         Self {
             i2c,
@@ -101,35 +104,38 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         }
     }
 
-    /// How it is wired and timed.
+    /// Wiring and timing of the sensor.
     #[must_use]
     pub const fn settings(&self) -> &Settings<N> {
         &self.settings
     }
 
-    /// Gives the bus, the delay and the clock back. Channels stay open unless [`stop`](Self::stop) closed them.
+    /// Returns the bus, the delay and the clock. Channels stay open unless [`stop`](Self::stop)
+    /// closed them.
     pub fn release(self) -> (I2C, D, C) {
         (self.i2c, self.delay, self.clock)
     }
 
-    /// Lends the bus to its owner, to free it after [`Error::BusHung`]: by [`recovery`](crate::recovery), or a way of the bus's own.
+    /// Lends the bus to the caller, to free it after [`Error::BusHung`], with
+    /// [`recovery`](crate::recovery) or in another way that the bus offers.
     ///
-    /// Which taxels are isolated is not forgotten.
+    /// Isolated taxels stay isolated.
     pub fn recover<T>(&mut self, free: impl FnOnce(&mut I2C, &mut D) -> T) -> T {
         self.is_ready = false;
         self.triggered_us = None;
         free(&mut self.i2c, &mut self.delay)
     }
 
-    /// Gives isolated taxels another chance at once. A taxel is isolated when the bus hung twice running with its channel alone open, and is looked
-    /// into again by itself after [`Settings::retry_us`].
+    /// Lets isolated taxels take part again at once. A taxel is isolated when the bus hung twice in
+    /// a row while only its channel was open. Without this call the driver tries it again after
+    /// [`Settings::retry_us`].
     pub const fn readmit(&mut self) {
         self.is_ready = false;
         self.suspect = None;
         self.isolated = Taxels::NONE;
     }
 
-    /// Changes [`Settings::conversion_us`], from the frame under way on.
+    /// Changes [`Settings::conversion_us`], starting with the frame in progress.
     pub const fn set_conversion_us(&mut self, conversion_us: u32) {
         self.settings.conversion_us = conversion_us;
     }
@@ -146,7 +152,8 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         all.filter(move |taxel| !isolated.contains(taxel.index))
     }
 
-    /// Those of them that take part in the frame under way, with what starts their conversion.
+    /// The taxels that take part in the frame in progress, each with the command that starts its
+    /// conversion.
     fn converting(&self, conversion: Conversion) -> impl Iterator<Item = (Taxel, Command)> + '_ {
         self.taxels().filter_map(move |taxel| {
             let is_out = self.left_out[taxel.index].is_some() || self.doubtful.contains(taxel.index);
@@ -155,7 +162,7 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         })
     }
 
-    /// The longest that a conversion takes, µs. `None`: there is none.
+    /// The longest conversion time of these taxels, µs. `None`: no taxel converts.
     fn longest_us(&self, conversion: Conversion) -> Option<u32> {
         let times = self
             .converting(conversion)
@@ -169,7 +176,7 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         &mut self.i2c
     }
 
-    /// Takes all taxels on a channel out.
+    /// Isolates all taxels of a channel.
     pub(super) fn isolate(&mut self, behind: Option<(SwitchAddress, Channels)>) {
         for taxel in self.taxels().filter(|taxel| taxel.place.behind == behind) {
             self.isolated.insert(taxel.index);
@@ -187,7 +194,7 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         self.switch(switch).select(channels).await
     }
 
-    /// Closes the channels of switches that may have any open, but of this one.
+    /// Closes the channels of all switches that may have any open, except of this one.
     async fn close_but(&mut self, kept: Option<SwitchAddress>) -> Result<(), Error<I2C::Error>> {
         for switch in self.settings.wiring.switches() {
             if self.open[number(switch)] && kept != Some(switch) {
@@ -206,7 +213,7 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         }
     }
 
-    /// Closes the channels of all switches, whatever is thought of them.
+    /// Closes the channels of all switches, whether they are known to be open or not.
     pub(super) async fn close(&mut self) -> Result<(), Error<I2C::Error>> {
         self.open = [true; 8];
         self.close_but(None).await
@@ -217,13 +224,14 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         self.diagnose(None, closed).await
     }
 
-    /// Makes sure that these channels of a switch are open.
+    /// Checks that exactly these channels of a switch are open.
     async fn verify(&mut self, switch: SwitchAddress, channels: Channels) -> Result<(), Error<I2C::Error>> {
         let verified = self.switch(switch).verify(channels).await;
         self.diagnose(None, verified).await
     }
 
-    /// With all channels closed, nobody may answer where barometers behind switches do.
+    /// Checks that nothing answers at the addresses of barometers behind switches while all
+    /// channels are closed.
     async fn look_for_conflicts(&mut self) -> Result<(), Error<I2C::Error>> {
         let hidden = |place: Place| place.behind.is_some();
         for taxel in self.taxels().filter(|taxel| hidden(taxel.place)) {
@@ -249,13 +257,15 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
 }
 
 impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
-    /// Closes all channels, sees that the switches obey and that nothing else has a barometer's address, looks into each channel alone, switches
-    /// the barometers on, and lets conversions under way end.
+    /// Closes all channels; checks that the switches take their masks and that no other device has
+    /// the address of a barometer behind a switch; opens each channel alone; starts the barometers;
+    /// waits until conversions in progress have ended.
     ///
-    /// The other operations do so by themselves when needed.
+    /// The other operations call this when it is needed.
     ///
     /// # Errors
-    /// Any but those of a single barometer; [`Error::AddressConflict`]; [`Error::BusHung`] with the taxel, if opening its channel hangs the bus.
+    /// Every error except those of a single barometer; [`Error::AddressConflict`];
+    /// [`Error::BusHung`] with the taxel, if opening its channel hangs the bus.
     pub async fn start(&mut self) -> Result<(), Error<I2C::Error>> {
         self.is_ready = false;
         self.triggered_us = None;
@@ -284,7 +294,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(())
     }
 
-    /// Triggers the next frame, unless one is under way. Right after [`frame`](Self::frame) the barometers convert while the caller computes.
+    /// Triggers the next frame, unless one is in progress. Call it right after
+    /// [`frame`](Self::frame): the barometers then convert while the caller computes.
     ///
     /// # Errors
     /// [`Error::NotTriggered`], and those of [`start`](Self::start).
@@ -295,10 +306,11 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(())
     }
 
-    /// Reads the frame under way, and triggers one before if there is none.
+    /// Reads the frame in progress. Without one, triggers a frame first.
     ///
     /// # Errors
-    /// What stops all taxels; those of [`trigger`](Self::trigger). The frame under way is lost.
+    /// Errors that concern all taxels; those of [`trigger`](Self::trigger). The frame in progress
+    /// is lost.
     pub async fn frame(&mut self) -> Result<Frame<N>, Error<I2C::Error>> {
         let triggered_us = match self.triggered_us.take() {
             Some(triggered_us) => triggered_us,
@@ -336,7 +348,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(frame)
     }
 
-    /// Closes all channels. A frame under way is lost.
+    /// Closes all channels. A frame in progress is lost.
     ///
     /// # Errors
     /// [`Error::SwitchMissing`], [`Error::Bus`], [`Error::BusHung`].
@@ -346,7 +358,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         self.close_or_diagnose().await
     }
 
-    /// Triggers all barometers that can be, and says when.
+    /// Triggers all barometers that can be triggered. Returns the time of the trigger, µs of the
+    /// clock.
     async fn broadcast(&mut self) -> Result<u64, Error<I2C::Error>> {
         if !self.is_ready {
             self.start().await?;
@@ -367,7 +380,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(self.clock.now_us())
     }
 
-    /// Starts conversions, with one write for all barometers that need the same bytes at the same address. Whether any took it.
+    /// Starts conversions, with one write for all barometers that take the same bytes at the same
+    /// address. Returns whether any barometer acknowledged.
     async fn tell(&mut self, conversion: Conversion) -> Result<bool, Error<I2C::Error>> {
         let mut told = Taxels::NONE;
         let mut is_taken = false;
@@ -388,7 +402,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
             let written = self.i2c.write(first.place.address, command.bytes()).await;
             match written.map_err(|source| Error::of_transaction(source, Error::BarometerMissing)) {
                 Err(Error::BarometerMissing) => {
-                    self.verify_group(group).await?; // if their channels are closed, nobody answers either
+                    self.verify_group(group).await?; // with its channels closed, no barometer would acknowledge either
                     for taxel in self.taxels().filter(|taxel| group.contains(taxel.index)) {
                         self.left_out[taxel.index] = Some(Fault::Missing);
                         self.drivers[taxel.index] = None;
@@ -404,7 +418,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(is_taken)
     }
 
-    /// The channels of a switch that taxels of a group are on.
+    /// The channels of a switch that have taxels of a group.
     fn channels_of(&self, group: Taxels, switch: SwitchAddress) -> Channels {
         let places = self.taxels().filter(|taxel| group.contains(taxel.index));
         let behind = places.filter_map(|taxel| taxel.place.behind);
@@ -437,7 +451,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(())
     }
 
-    /// Reads what conversions gave, one taxel after the other.
+    /// Reads the results of a conversion, one taxel after the other.
     async fn collect(
         &mut self,
         conversion: Conversion,
@@ -459,7 +473,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(())
     }
 
-    /// Leaves a taxel out, for what an error says of it.
+    /// Leaves a taxel out of the frame, and returns the fault that follows from the error.
     async fn leave_out(
         &mut self,
         taxel: Taxel,
@@ -472,7 +486,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(fault)
     }
 
-    /// Looks into isolated channels whose time has come: one that does not hang the bus any more takes part again.
+    /// Tries isolated channels whose waiting time has passed. A channel that no longer hangs the
+    /// bus takes part again.
     async fn look_again(&mut self) -> Result<(), Error<I2C::Error>> {
         let first_us = u64::from(self.settings.retry_us);
         for index in 0..N {
@@ -512,7 +527,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(())
     }
 
-    /// Sees that the switch obeys and that the bus works with one channel open, and waits for its barometer.
+    /// Checks that the switch takes the mask and that the bus works with this channel open, then
+    /// waits for the barometer.
     async fn probe(&mut self, taxel: Taxel, patience: &mut Patience) -> Result<(), Error<I2C::Error>> {
         self.open(taxel.place).await?;
         if let Some((switch, channel)) = taxel.place.behind {
@@ -521,7 +537,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         self.settle(taxel, patience).await
     }
 
-    /// Asks the barometer of one taxel whether it still converts, and switches it on if it has to be.
+    /// Asks the barometer of one taxel whether it still converts. Starts it if it is not started.
     async fn ask(&mut self, taxel: Taxel) -> Result<(), Error<I2C::Error>> {
         self.open(taxel.place).await?;
         let mut patience = Patience {
@@ -531,7 +547,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         self.settle(taxel, &mut patience).await
     }
 
-    /// Waits until the barometer whose channel is open converts no more; switches it on before if it is not.
+    /// Waits until the barometer whose channel is open has ended its conversion. Starts it first if
+    /// it is not started.
     async fn settle(&mut self, taxel: Taxel, patience: &mut Patience) -> Result<(), Error<I2C::Error>> {
         let Place { chip, address, .. } = taxel.place;
         let mut line = Line::new(&mut self.i2c, &mut self.delay, address, patience);
@@ -546,7 +563,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(())
     }
 
-    /// Reads the barometer of one taxel, once it has ended.
+    /// Reads the barometer of one taxel once its conversion has ended.
     async fn read(
         &mut self,
         taxel: Taxel,
@@ -563,7 +580,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
     }
 }
 
-/// Which of the eight switches that a bus can have, from 0.
+/// The number of a switch, 0 to 7: a bus can have eight.
 fn number(switch: SwitchAddress) -> usize {
     usize::from(switch.get() - SwitchAddress::FIRST)
 }

@@ -1,4 +1,4 @@
-//! The switch.
+//! The I²C switch.
 
 use embedded_hal_async::i2c::I2c;
 
@@ -7,7 +7,7 @@ use crate::error::Error;
 
 /// The TCA9548A, an I²C switch of eight channels.
 ///
-/// Remembers nothing: a mask that was written may be gone, through a brown-out, by the time it is relied on.
+/// The driver does not store the mask: a brown-out can clear it in the switch at any time.
 #[derive(Debug)]
 pub struct Tca9548a<I2C> {
     i2c: I2C,
@@ -23,12 +23,13 @@ impl<I2C: I2c> Tca9548a<I2C> {
         }
     }
 
-    /// Gives the bus back.
+    /// Returns the bus.
     pub fn release(self) -> I2C {
         self.i2c
     }
 
-    /// Opens these channels and closes all others, from the STOP of this transaction on.
+    /// Opens these channels and closes all others. The change takes effect at the STOP of this
+    /// transaction.
     ///
     /// # Errors
     /// [`Error::SwitchMissing`], [`Error::Bus`].
@@ -48,7 +49,7 @@ impl<I2C: I2c> Tca9548a<I2C> {
         Ok(Channels::from_mask(mask[0]))
     }
 
-    /// Makes sure that these channels are open, and no others.
+    /// Checks that these channels are open, and no others.
     ///
     /// # Errors
     /// [`Error::SwitchReset`] if they are not, [`Error::SwitchMissing`], [`Error::Bus`].

@@ -1,7 +1,8 @@
 //! The drivers over [`embedded_hal`].
 //!
-//! A bus that blocks is a bus whose futures are ready at once. So the protocol is written once, for [`asynch`](crate::asynch), and polled
-//! once here: no executor, no waker, nothing to wait for.
+//! With a blocking bus all futures are ready at once. The protocol is therefore written once, in
+//! [`asynch`](crate::asynch), and each of its futures is polled once here. No executor and no waker
+//! are needed.
 
 mod phystac;
 mod switch;
@@ -14,7 +15,8 @@ use core::task::{Context, Poll, Waker};
 
 use embedded_hal::i2c::{ErrorType, Operation};
 
-/// A blocking bus or delay, as one whose futures are ready at once: for what is written over [`embedded_hal_async`].
+/// A blocking bus or delay as an async one whose futures are ready at once, for code that is
+/// written over [`embedded_hal_async`].
 #[derive(Clone, Copy, Debug)]
 pub struct AtOnce<T>(pub T);
 
@@ -50,7 +52,8 @@ impl<T: embedded_hal::delay::DelayNs> embedded_hal_async::delay::DelayNs for AtO
     }
 }
 
-/// The outcome of a future that awaits nothing but [`AtOnce`], and so is never pending. Of another one it polls without rest.
+/// The output of a future that awaits only [`AtOnce`], and so is never pending. Any other future is
+/// polled in a loop without sleep.
 pub fn now<F: Future>(future: F) -> F::Output {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());

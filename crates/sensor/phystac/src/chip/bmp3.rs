@@ -1,7 +1,8 @@
 //! Bosch's BMP384, BMP388 and BMP390.
 //!
-//! Source: data sheet BMP390 (DS002-07, rev 1.7) and Bosch's own BMP3_SensorAPI, whose result is held at the ends of the range: this one is
-//! not, so that what is out of range is seen to be.
+//! Source: data sheet BMP390 (DS002-07, rev 1.7) and Bosch's own BMP3_SensorAPI. That API clamps
+//! its result to the ends of the range. This driver does not, so that a pressure out of range is
+//! visible.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -14,7 +15,7 @@ use crate::line::{Line, u24_le};
 
 const IDENTITY: u8 = 0x00;
 const ERRORS: u8 = 0x02;
-/// Status, then pressure and temperature, three bytes each, the least significant first.
+/// Status, then pressure and temperature, three bytes each, least significant byte first.
 const STATUS: u8 = 0x03;
 const POWER: u8 = 0x1B;
 const OVERSAMPLING: u8 = 0x1C;
@@ -22,15 +23,15 @@ const CALIBRATION: u8 = 0x31;
 const COMMAND: u8 = 0x7E;
 
 const RESET: u8 = 0xB6;
-/// After a reset, µs.
+/// Wait after a reset, µs.
 const RESET_US: u32 = 3000;
-/// In [`ERRORS`]: it does not work at all.
+/// Bit of [`ERRORS`]: the chip does not work.
 const FATAL: u8 = 0x01;
-/// In [`STATUS`]: a new pressure, and a new temperature.
+/// Bits of [`STATUS`]: a new pressure and a new temperature.
 const READY: u8 = 0x60;
-/// In [`POWER`]: pressure and temperature, measured once.
+/// Value of [`POWER`]: one measurement of pressure and temperature.
 const FORCED: u8 = 0x13;
-/// What is read where nothing was measured.
+/// The value that is read if nothing was measured.
 const NOTHING: u32 = 0x80_0000;
 
 pub(super) const DATA_384: ChipData = data("BMP384", 0x50);
@@ -38,7 +39,7 @@ pub(super) const DATA_388: ChipData = data("BMP388", 0x50);
 pub(super) const DATA_390: ChipData = data("BMP390", 0x60);
 
 const SPEEDS: &[Speed] = &[
-    // with as many samples of the temperature as the data sheet recommends
+    // Each with the number of temperature samples that the data sheet recommends.
     Speed::new(1, 5700, Some(3.7), 0o00),
     Speed::new(2, 7960, Some(2.7), 0o01),
     Speed::new(4, 12_480, Some(2.0), 0o02),
@@ -64,7 +65,7 @@ const fn data(name: &'static str, identity: u8) -> ChipData {
     }
 }
 
-/// A BMP3, which measures once when told to.
+/// A BMP3 in forced mode: one measurement for each command.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bmp3 {
     data: &'static ChipData,
@@ -98,7 +99,7 @@ impl Driver for Bmp3 {
     }
 
     fn command(&self, conversion: Conversion) -> Option<Command> {
-        // Pairs of a register and its byte.
+        // Pairs of a register and its value.
         let bytes = [OVERSAMPLING, self.speed.code, POWER, FORCED];
         (conversion == Conversion::Pressure).then(|| Command::new(bytes, self.speed.conversion_us))
     }
@@ -132,7 +133,7 @@ impl Driver for Bmp3 {
     }
 }
 
-/// What a part was calibrated to: the data sheet's parameters, scaled.
+/// The calibration of a part: the data sheet's parameters, scaled.
 #[derive(Clone, Copy, Debug)]
 struct Calibration {
     t: [f64; 3],
@@ -140,7 +141,7 @@ struct Calibration {
 }
 
 impl Calibration {
-    /// `None` if nothing was ever written there.
+    /// `None` if the calibration memory was never written.
     fn of(bytes: [u8; 21]) -> Option<Self> {
         if bytes == [0; 21] || bytes == [0xFF; 21] {
             return None;
@@ -188,7 +189,8 @@ impl Calibration {
 mod tests {
     use super::*;
 
-    /// A real BMP390 (tests of the crate `bmp390`), and what its own sensor interface computes.
+    /// NVM of a real BMP390 (from the tests of the crate `bmp390`), and the values that Bosch's
+    /// sensor API computes.
     const NVM: [u8; 21] = [
         0x98, 0x6C, 0xA9, 0x4A, 0xF9, 0xE3, 0x1C, 0x61, 0x16, 0x06, 0x01, 0x51, 0x4A, 0xDE, 0x5D, 0x03, 0xFA,
         0xF9, 0x0E, 0x06, 0xF5,

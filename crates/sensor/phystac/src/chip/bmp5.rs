@@ -1,6 +1,6 @@
 //! Bosch's BMP581 and BMP585.
 //!
-//! Source: Bosch's own BMP5_SensorAPI. They compensate on their own.
+//! Source: Bosch's own BMP5_SensorAPI. The chips compensate by themselves.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -13,29 +13,29 @@ use crate::line::{Line, signed, u24_le};
 
 const IDENTITY: u8 = 0x01;
 const INTERRUPT_SOURCE: u8 = 0x15;
-/// Temperature, then pressure, three bytes each, the least significant first.
+/// Temperature, then pressure, three bytes each, least significant byte first.
 const DATA_REGISTER: u8 = 0x1D;
-/// Cleared by reading. The register after it is the status.
+/// Reading clears it. The next register is the status.
 const INTERRUPT_STATUS: u8 = 0x27;
-/// Oversampling; the register after it is the mode.
+/// Oversampling. The next register is the mode.
 const OVERSAMPLING: u8 = 0x36;
 const COMMAND: u8 = 0x7E;
 
 const RESET: u8 = 0xB6;
-/// From power on, µs.
+/// Wait after power-on, µs.
 const RESET_US: u32 = 10_000;
-/// In [`INTERRUPT_SOURCE`] and [`INTERRUPT_STATUS`]: there are new data.
+/// Bit of [`INTERRUPT_SOURCE`] and [`INTERRUPT_STATUS`]: new data.
 const DATA_READY: u8 = 0x01;
-/// In [`INTERRUPT_STATUS`]: it woke up.
+/// Bit of [`INTERRUPT_STATUS`]: the chip was powered on or reset.
 const WOKE_UP: u8 = 0x10;
-/// In the status: the memory of its calibration is there; it is broken.
+/// Bits of the status: the calibration memory is ready; it has an error.
 const MEMORY_READY: u8 = 0x02;
 const MEMORY_BROKEN: u8 = 0x04;
-/// In [`OVERSAMPLING`]: pressure is measured.
+/// Bit of [`OVERSAMPLING`]: pressure is measured.
 const WITH_PRESSURE: u8 = 0x40;
-/// In the mode: measured once, never in deep standby.
+/// Value of the mode: one measurement, never in deep standby.
 const FORCED: u8 = 0x82;
-/// What is read where nothing was measured.
+/// The value that is read if nothing was measured.
 const NOTHING: u32 = 0x7F_FFFF;
 
 pub(super) const DATA_581: ChipData = data("BMP581", 0x50);
@@ -53,7 +53,8 @@ const fn data(name: &'static str, identity: u8) -> ChipData {
         name,
         addresses: &[0x46, 0x47],
         range_pa: [30_000.0, 125_000.0],
-        // Times of conversions are not published. These are from when on it is asked: at one sample it measures 240 times a second.
+        // Conversion times are not published. These are the times from which on the chip is asked;
+        // with one sample it measures 240 times per second.
         speeds: SPEEDS,
         usual_samples: Some(1),
         knows_its_scale: true,
@@ -66,7 +67,7 @@ const fn data(name: &'static str, identity: u8) -> ChipData {
     }
 }
 
-/// A BMP5, which measures once when told to.
+/// A BMP5 in forced mode: one measurement for each command.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bmp5 {
     data: &'static ChipData,
@@ -86,7 +87,7 @@ impl Driver for Bmp5 {
         line.pause_us(RESET_US).await;
         let [interrupts, status] = line.read(INTERRUPT_STATUS).await?;
         if interrupts & WOKE_UP == 0 {
-            return Err(Error::ConversionStuck); // it does not do as it is told
+            return Err(Error::ConversionStuck); // the chip does not follow the command
         }
         if status & (MEMORY_READY | MEMORY_BROKEN) != MEMORY_READY {
             return Err(Error::Uncalibrated);
@@ -110,7 +111,7 @@ impl Driver for Bmp5 {
         _: Conversion,
         line: &mut Line<'_, I, D>,
     ) -> Result<Progress, Error<I::Error>> {
-        // Data that are read before their flag may be older than it.
+        // The flag is read first: data that are read before it may be older.
         let [interrupts] = line.read(INTERRUPT_STATUS).await?;
         if interrupts & WOKE_UP != 0 {
             return Err(Error::Restarted);

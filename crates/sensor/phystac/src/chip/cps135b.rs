@@ -1,6 +1,7 @@
 //! Consensic's CPS135B.
 //!
-//! Its data sheet is not public. The map is the one that CFSensor's XGZP6847D and XGZP6897D (data sheet V2.5) and NOVOSENSE's NSA2300 share.
+//! Its data sheet is not public. The register map is the one that CFSensor's XGZP6847D and
+//! XGZP6897D (data sheet V2.5) and NOVOSENSE's NSA2300 share.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -11,17 +12,18 @@ use crate::conversion::{Counts, Pressure, Sample};
 use crate::error::Error;
 use crate::line::Line;
 
-/// Pressure, 3 bytes, then temperature, 2 bytes; the most significant first.
+/// Pressure, 3 bytes, then temperature, 2 bytes; most significant byte first.
 const DATA_REGISTER: u8 = 0x06;
-/// What the part does, and whether it still does.
+/// The command, and the flag that a conversion is in progress.
 const COMMAND: u8 = 0x30;
-/// Input swap, the factory's gain, and in the lowest three bits the oversampling of the pressure.
+/// Input swap, factory gain, and in the lowest three bits the oversampling of the pressure.
 const PRESSURE_CONFIGURATION: u8 = 0xA6;
 const OVERSAMPLING_BITS: u8 = 0b111;
 
-/// Starts one conversion of temperature, then pressure. Code 100 would burn the part's one-time memory: nothing here makes it.
+/// Starts one conversion of temperature, then pressure. Command code 100 would burn the part's
+/// one-time programmable memory: no code here can produce it.
 const TRIGGER: [u8; 2] = [COMMAND, 0b0000_1010];
-/// `Sco` of [`COMMAND`]: a conversion is under way. Clears itself at the end.
+/// `Sco` of [`COMMAND`]: a conversion is in progress. The chip clears it at the end.
 const CONVERTING: u8 = 0b0000_1000;
 
 pub(super) const DATA: ChipData = ChipData {
@@ -38,7 +40,7 @@ pub(super) const DATA: ChipData = ChipData {
         speed(16_384, 0b110),
         speed(32_768, 0b111),
     ],
-    usual_samples: None, // what its factory set
+    usual_samples: None, // as set in the factory
     knows_its_scale: false,
     identity: 0,
     cost: Cost {
@@ -57,7 +59,7 @@ const fn speed(samples: u16, code: u8) -> Speed {
     }
 }
 
-/// A CPS135B, which converts when told to and sleeps otherwise.
+/// A CPS135B: it converts once for each command, and sleeps otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cps135b {
     sample: Sample,
@@ -118,14 +120,16 @@ impl Driver for Cps135b {
     }
 }
 
-/// The byte of [`PRESSURE_CONFIGURATION`] for an oversampling; its upper bits are the factory's and stay.
+/// The value of [`PRESSURE_CONFIGURATION`] for an oversampling. The upper bits are set in the
+/// factory and kept.
 const fn configured(configuration: u8, code: u8) -> u8 {
     configuration & !OVERSAMPLING_BITS | code
 }
 
-/// The sample in the five bytes read from [`DATA_REGISTER`]; none in zeros, which a part holds that woke up and has not converted since.
+/// The sample in the five bytes read from [`DATA_REGISTER`]. `None` if all are zero: a part holds
+/// zeros after power-on until its first conversion.
 ///
-/// Counts of 0 at 0 °C sharp would look the same, but are no air.
+/// A pressure of 0 counts at exactly 0 °C would look the same, but free air does not read 0.
 fn sample(data: [u8; 5]) -> Option<Sample> {
     let [high, middle, low, temperature @ ..] = data;
     (data != [0; 5]).then(|| Sample {

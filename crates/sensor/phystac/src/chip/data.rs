@@ -1,36 +1,38 @@
-//! What data sheets say of a chip.
+//! Data of a chip, from its data sheet.
 
-/// What is known of a chip.
+/// Data of a chip.
 #[derive(Debug)]
 pub struct ChipData {
-    /// The manufacturer's name for it.
+    /// The manufacturer's name of the chip.
     pub name: &'static str,
-    /// The 7-bit addresses that it can have.
+    /// The 7-bit addresses that the chip can have.
     pub addresses: &'static [u8],
-    /// The pressures that it measures, Pa: what is beyond is [`Fault::Saturated`](crate::Fault::Saturated).
+    /// The range of pressures that the chip measures, Pa. A pressure beyond is
+    /// [`Fault::Saturated`](crate::Fault::Saturated).
     pub range_pa: [f32; 2],
-    /// What it can do, the quickest first.
+    /// The oversampling settings of the chip, fastest first.
     pub speeds: &'static [Speed],
-    /// [`Speed::samples`] where nobody asks for others. `None`: as it wakes up.
+    /// The default for [`Speed::samples`]. `None`: the chip's own setting after power-on.
     pub usual_samples: Option<u16>,
-    /// Whether it says itself what it counts: of others a [`Transfer`](crate::Transfer) must be confirmed.
+    /// Whether the chip's output has a known scale. For other chips a [`Transfer`](crate::Transfer)
+    /// must be confirmed.
     pub knows_its_scale: bool,
-    /// What its register of identity holds; 0 where it has none.
+    /// Expected content of the identity register; 0 if the chip has none.
     pub(super) identity: u8,
-    /// What its answer costs on the bus.
+    /// Bus cost of a conversion.
     pub(crate) cost: Cost,
 }
 
-/// How often a chip samples for one pressure, and what that costs.
+/// An oversampling setting of a chip, with its time and noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speed {
-    /// Samples that make one pressure.
+    /// Number of samples averaged for one pressure.
     pub samples: u16,
-    /// The longest time that a conversion takes, µs. `None`: not published.
+    /// The longest conversion time, µs. `None`: not published.
     pub conversion_us: Option<u32>,
     /// Noise, Pa rms. `None`: not published.
     pub noise_pa: Option<f32>,
-    /// What the chip is told for it.
+    /// The code of this setting in the chip's register.
     pub(super) code: u8,
 }
 
@@ -45,26 +47,27 @@ impl Speed {
     }
 }
 
-/// What a chip costs on the bus.
+/// Bus cost of a chip.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cost {
-    /// Bytes of the command that starts a conversion, its address not counted.
+    /// Bytes of the command that starts a conversion, without the address.
     pub(crate) command: u32,
-    /// Clocks of what is read at the end of a conversion.
+    /// Clocks to read the result of a conversion.
     pub(crate) collect_clocks: u32,
-    /// Whether temperature is a conversion of its own.
+    /// Whether temperature is a separate conversion.
     pub(crate) is_temperature_apart: bool,
 }
 
 impl Cost {
-    /// Clocks of a read of so many bytes from a register: address, register; address, bytes.
+    /// Clocks to read `bytes` bytes from a register: address, register; address, bytes.
     pub(crate) const fn read_clocks(bytes: u32) -> u32 {
         9 * (3 + bytes) + 3
     }
 }
 
 impl ChipData {
-    /// The speed with so many samples; without a number the usual one. `None`: the chip cannot.
+    /// The setting with this number of samples; without a number the default one. Outer `None`: the
+    /// chip has no such setting.
     pub(crate) fn speed(&self, samples: Option<u16>) -> Option<Option<Speed>> {
         let Some(samples) = samples.or(self.usual_samples) else {
             return Some(None);

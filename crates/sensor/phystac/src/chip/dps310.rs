@@ -1,7 +1,7 @@
 //! Infineon's DPS310.
 //!
-//! Source: Infineon's own driver, DPS310-Pressure-Sensor. Where Linux's driver says otherwise of the bits of the register 0x09, Infineon's is
-//! followed.
+//! Source: Infineon's own driver, DPS310-Pressure-Sensor. Linux's driver differs in the bits of
+//! register 0x09; this driver follows Infineon's.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -12,7 +12,8 @@ use crate::conversion::{Counts, Sample};
 use crate::error::Error;
 use crate::line::{Line, signed, u24_be};
 
-/// Pressure and temperature, three bytes each, the most significant first; then the two registers below.
+/// Pressure and temperature, three bytes each, most significant byte first; then the two registers
+/// below.
 const DATA_REGISTER: u8 = 0x00;
 const PRESSURE_CONFIGURATION: u8 = 0x06;
 const TEMPERATURE_CONFIGURATION: u8 = 0x07;
@@ -21,28 +22,28 @@ const CONFIGURATION: u8 = 0x09;
 const RESET_REGISTER: u8 = 0x0C;
 const IDENTITY: u8 = 0x0D;
 const COEFFICIENTS: u8 = 0x10;
-/// In its highest bit: with which of its two thermometers it was calibrated.
+/// Highest bit: which of its two thermometers the chip was calibrated with.
 const THERMOMETER: u8 = 0x28;
-/// In bit 1: whether the thermometer's setting was loaded.
+/// Bit 1: whether the thermometer's setting was loaded.
 const FUSES: u8 = 0x32;
 
 const RESET: u8 = 0b1001;
-/// After a reset, µs: the coefficients are there after at most 40 ms.
+/// Wait after a reset, µs. The coefficients are available after at most 40 ms.
 const RESET_US: u32 = 50_000;
-/// In [`MEASURE`]: coefficients and sensor are ready.
+/// Bits of [`MEASURE`]: coefficients and sensor are ready.
 const WOKE_UP: u8 = 0xC0;
 const TEMPERATURE_READY: u8 = 0x20;
 const PRESSURE_READY: u8 = 0x10;
-/// What it measures at present; 0: nothing.
+/// What the chip measures now; 0: nothing.
 const MEASURING: u8 = 0x07;
 const MEASURE_PRESSURE: u8 = 1;
 const MEASURE_TEMPERATURE: u8 = 2;
-/// In [`CONFIGURATION`]: sums of more than eight samples are shifted to fit.
+/// Bits of [`CONFIGURATION`]: sums of more than eight samples are shifted to fit.
 const PRESSURE_SHIFT: u8 = 0x04;
-/// From this code on.
+/// The lowest code of samples that needs the shift.
 const SHIFTED: u8 = 4;
 
-/// By the code of samples: what a measurement is divided by.
+/// Divisor of a measurement, by the code of samples.
 const SCALES: [f32; 8] = [
     524_288.0,
     1_572_864.0,
@@ -53,7 +54,7 @@ const SCALES: [f32; 8] = [
     1_040_384.0,
     2_088_960.0,
 ];
-/// The time of a temperature of one sample, µs.
+/// Conversion time of a temperature of one sample, µs.
 const TEMPERATURE_US: u32 = 3600;
 
 pub(super) const DATA: ChipData = ChipData {
@@ -80,12 +81,12 @@ pub(super) const DATA: ChipData = ChipData {
     },
 };
 
-/// A DPS310, which measures pressure and temperature one after the other.
+/// A DPS310: it measures pressure and temperature one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dps310 {
     speed: Speed,
     coefficients: Coefficients,
-    /// What the two registers of configuration must hold.
+    /// Expected content of the two configuration registers.
     configuration: [u8; 2],
     pressure: [u8; 3],
     temperature: [u8; 3],
@@ -107,7 +108,7 @@ impl Driver for Dps310 {
         let coefficients = Coefficients::of(line.read(COEFFICIENTS).await?).ok_or(Error::Uncalibrated)?;
         let [fuses] = line.read(FUSES).await?;
         if fuses & 2 == 0 {
-            // Such parts say 60 °C until they are told so (Infineon's driver).
+            // Without these writes some parts read 60 °C (Infineon's driver).
             for write in [
                 [0x0E, 0xA5],
                 [0x0F, 0x96],
@@ -153,7 +154,7 @@ impl Driver for Dps310 {
         conversion: Conversion,
         line: &mut Line<'_, I, D>,
     ) -> Result<Progress, Error<I::Error>> {
-        // Its flags are cleared as the data are read: they come first.
+        // The flags are read first: reading the data clears them.
         let [measure] = line.read(MEASURE).await?;
         let ready = match conversion {
             Conversion::Pressure => PRESSURE_READY,
@@ -161,13 +162,13 @@ impl Driver for Dps310 {
         };
         if measure & ready == 0 {
             return match measure & MEASURING {
-                0 => Err(Error::Restarted), // nobody has told it to
+                0 => Err(Error::Restarted), // no measurement was commanded since its start
                 _ => Ok(Progress::Converting),
             };
         }
         let [p0, p1, p2, t0, t1, t2, configuration @ ..] = line.read::<8>(DATA_REGISTER).await?;
         if configuration != self.configuration {
-            return Err(Error::Restarted); // its numbers are of another scale
+            return Err(Error::Restarted); // its values have another scale
         }
         match conversion {
             Conversion::Pressure => self.pressure = [p0, p1, p2],
@@ -191,7 +192,7 @@ impl Driver for Dps310 {
     }
 }
 
-/// What a part was calibrated to.
+/// The calibration of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Coefficients {
     c0: f32,
@@ -206,7 +207,8 @@ struct Coefficients {
 }
 
 impl Coefficients {
-    /// From a string of bits, the most significant first. `None` if nothing was ever written there.
+    /// From a bit string, most significant bit first. `None` if the coefficients were never
+    /// written.
     fn of(bytes: [u8; 18]) -> Option<Self> {
         if bytes == [0; 18] || bytes == [0xFF; 18] {
             return None;
@@ -256,7 +258,7 @@ impl Coefficients {
 mod tests {
     use super::*;
 
-    /// Coefficients of a part that somebody published, in a report on Infineon's driver.
+    /// Coefficients of a part, published in an issue report on Infineon's driver.
     const BYTES: [u8; 18] = [
         0x0D, 0xEE, 0xD7, 0x13, 0x7D, 0x8F, 0x24, 0x0C, 0xF7, 0x09, 0x05, 0xA4, 0xDA, 0x1B, 0x00, 0x6F, 0xFA,
         0xF7,

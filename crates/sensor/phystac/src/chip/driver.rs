@@ -1,4 +1,4 @@
-//! What is asked of a chip's driver.
+//! The trait of a chip's driver.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -8,16 +8,17 @@ use crate::conversion::Sample;
 use crate::error::Error;
 use crate::line::Line;
 
-/// What a chip converts.
+/// The quantity that a conversion measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Conversion {
-    /// Pressure; of a chip that always converts both, temperature as well.
+    /// Pressure. A chip that always converts both quantities converts temperature as well.
     Pressure,
-    /// Temperature, of a chip that converts it apart.
+    /// Temperature, for chips that convert it separately.
     Temperature,
 }
 
-/// The bytes that start a conversion, and how long it takes. All chips at an address that need the same bytes get them at once.
+/// The bytes that start a conversion, and its duration. All chips of one address that need the same
+/// bytes get them in one write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Command {
     bytes: [u8; 4],
@@ -27,7 +28,7 @@ pub(crate) struct Command {
 }
 
 impl Command {
-    /// Up to four bytes.
+    /// A command of at most four bytes.
     pub(crate) fn new<const LEN: usize>(bytes: [u8; LEN], conversion_us: Option<u32>) -> Self {
         let mut all = [0; 4];
         all[..LEN].copy_from_slice(&bytes);
@@ -43,7 +44,7 @@ impl Command {
     }
 }
 
-/// How far a conversion is.
+/// Progress of a conversion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Progress {
     /// It has not ended yet.
@@ -52,24 +53,25 @@ pub(crate) enum Progress {
     Done,
 }
 
-/// Speaks to one chip. What starts a conversion carries all that the chip must know where that can be: then one that lost its power
-/// between two conversions measures as before.
+/// The driver of one chip. The command that starts a conversion carries all settings that the chip
+/// needs, where the chip allows it: a chip that lost its power between two conversions then
+/// measures as before.
 pub(crate) trait Driver: Copy {
-    /// Switches the chip on: who it is, what it was calibrated to, how it is to measure.
+    /// Starts the chip: checks its identity, reads its calibration, sets how it measures.
     ///
     /// # Errors
-    /// [`Error::BarometerMissing`], [`Error::WrongChip`], [`Error::Uncalibrated`], [`Error::ConversionStuck`], [`Error::OversamplingRefused`],
-    /// [`Error::Bus`].
+    /// [`Error::BarometerMissing`], [`Error::WrongChip`], [`Error::Uncalibrated`],
+    /// [`Error::ConversionStuck`], [`Error::OversamplingRefused`], [`Error::Bus`].
     async fn start<I: I2c, D: DelayNs>(
         data: &'static ChipData,
         speed: Option<Speed>,
         line: &mut Line<'_, I, D>,
     ) -> Result<Self, Error<I::Error>>;
 
-    /// What starts a conversion. `None`: the chip has no such conversion.
+    /// The command that starts a conversion. `None`: the chip has no such conversion.
     fn command(&self, conversion: Conversion) -> Option<Command>;
 
-    /// Whether a conversion is under way. A chip that cannot say so is not.
+    /// Whether a conversion is in progress. `false` for a chip that has no such flag.
     ///
     /// # Errors
     /// [`Error::BarometerMissing`], [`Error::Bus`].
@@ -78,16 +80,17 @@ pub(crate) trait Driver: Copy {
         Ok(false)
     }
 
-    /// Reads what a conversion gave, if it has ended.
+    /// Reads the result of a conversion, if it has ended.
     ///
     /// # Errors
-    /// [`Error::ConversionStuck`]: there is no result, and none will come. [`Error::Restarted`], [`Error::BarometerMissing`], [`Error::Bus`].
+    /// [`Error::ConversionStuck`]: there is no result, and there will be none.
+    /// [`Error::Restarted`], [`Error::BarometerMissing`], [`Error::Bus`].
     async fn collect<I: I2c, D: DelayNs>(
         &mut self,
         conversion: Conversion,
         line: &mut Line<'_, I, D>,
     ) -> Result<Progress, Error<I::Error>>;
 
-    /// What was read last.
+    /// The last sample that was read.
     fn sample(&self) -> Sample;
 }

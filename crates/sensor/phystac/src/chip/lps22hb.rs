@@ -1,6 +1,6 @@
 //! ST's LPS22HB.
 //!
-//! Source: ST's own driver, lps22hb-pid. It compensates on its own.
+//! Source: ST's own driver, lps22hb-pid. The chip compensates by itself.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -12,28 +12,28 @@ use crate::error::Error;
 use crate::line::{Line, signed, u24_le};
 
 const WHO_AM_I: u8 = 0x0F;
-/// Rate and update; the register after it starts a measurement.
+/// Rate and data update. The next register starts a measurement.
 const CONTROL_1: u8 = 0x10;
 const CONTROL_2: u8 = 0x11;
-/// Status, pressure (3 bytes), temperature (2 bytes); the least significant first.
+/// Status, pressure (3 bytes), temperature (2 bytes); least significant byte first.
 const STATUS: u8 = 0x27;
 
-/// In [`CONTROL_1`]: bytes of one measurement stay together; no rate of its own.
+/// Bits of [`CONTROL_1`]: the bytes of one measurement stay together; no periodic measurements.
 const BLOCKS: u8 = 0x02;
-/// In [`CONTROL_2`].
+/// Bit of [`CONTROL_2`].
 const ONE_SHOT: u8 = 0x01;
 const RESET: u8 = 0x04;
 const COUNTS_UP: u8 = 0x10;
-/// In [`STATUS`]: a new pressure, and a new temperature.
+/// Bits of [`STATUS`]: a new pressure and a new temperature.
 const READY: u8 = 0x03;
-/// After a reset, µs.
+/// Wait after a reset, µs.
 const RESET_US: u32 = 2000;
 
 pub(super) const DATA: ChipData = ChipData {
     name: "LPS22HB",
     addresses: &[0x5C, 0x5D],
     range_pa: [26_000.0, 126_000.0],
-    // From when on it is asked: it measures at most 75 times a second.
+    // The time from which on the chip is asked: it measures at most 75 times per second.
     speeds: &[Speed::new(1, 13_300, Some(0.75), 0)],
     usual_samples: Some(1),
     knows_its_scale: true,
@@ -45,7 +45,7 @@ pub(super) const DATA: ChipData = ChipData {
     },
 };
 
-/// An LPS22HB, which measures once when told to.
+/// An LPS22HB: one measurement for each command.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lps22hb {
     speed: Speed,

@@ -1,6 +1,6 @@
-//! The table of chips: what their data sheets say of each, and who speaks to it.
+//! The table of chips: data from their data sheets, and the driver of each.
 //!
-//! A new chip is a file of its own here, with its golden bytes, and a line in [`chips!`].
+//! To add a chip, add a file here with its driver and golden bytes, and a line in [`chips!`].
 
 mod bmp3;
 mod bmp5;
@@ -25,10 +25,10 @@ use crate::conversion::Sample;
 use crate::error::Error;
 use crate::line::Line;
 
-/// The chips, and who speaks to each. One line for a chip.
+/// The chips and their drivers, one line for each chip.
 macro_rules! chips {
     ($($(#[$doc:meta])* $chip:ident: $driver:ident, $data:path;)*) => {
-        /// A barometer that can be read.
+        /// A barometer that this crate can read.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Chip {
@@ -36,10 +36,10 @@ macro_rules! chips {
         }
 
         impl Chip {
-            /// All of them.
+            /// All chips.
             pub const ALL: &'static [Self] = &[$(Self::$chip),*];
 
-            /// What is known of it.
+            /// Data of the chip.
             #[must_use]
             pub const fn data(self) -> &'static ChipData {
                 match self {
@@ -49,7 +49,7 @@ macro_rules! chips {
         }
 
         impl AnyDriver {
-            /// Switches a chip on: who it is, what it was calibrated to, how it is to measure.
+            /// Starts a chip: checks its identity, reads its calibration, sets how it measures.
             pub(crate) async fn start<I: I2c, D: DelayNs>(
                 chip: Chip,
                 speed: Option<Speed>,
@@ -63,12 +63,12 @@ macro_rules! chips {
     };
 }
 
-/// The drivers, and what each is asked.
+/// The drivers, and the functions of the trait that are passed on to each.
 macro_rules! drivers {
     ($($module:ident::$driver:ident),*) => {
         $(use $module::$driver;)*
 
-        /// The driver of a chip that was switched on.
+        /// The driver of a chip that was started.
         #[derive(Clone, Copy, Debug)]
         pub(crate) enum AnyDriver {
             $($driver($driver),)*
@@ -114,32 +114,32 @@ drivers! {
 }
 
 chips! {
-    /// Consensic's, up to 1500 kPa: the PhysTac's.
+    /// Consensic, up to 1500 kPa; the chip of the PhysTac.
     Cps135b: Cps135b, cps135b::DATA;
-    /// TE's, gel-filled, up to 3 MPa.
+    /// TE, gel-filled, up to 3 MPa.
     Ms5837_30Ba: Ms5837, ms5837::DATA_30BA;
-    /// TE's, gel-filled, up to 200 kPa, and quieter.
+    /// TE, gel-filled, up to 200 kPa; lower noise.
     Ms5837_02Ba: Ms5837, ms5837::DATA_02BA;
-    /// NXP's, up to 110 kPa.
+    /// NXP, up to 110 kPa.
     Mpl3115a2: Mpl3115a2, mpl3115a2::DATA;
-    /// Bosch's, gel-filled, up to 125 kPa.
+    /// Bosch, gel-filled, up to 125 kPa.
     Bmp384: Bmp3, bmp3::DATA_384;
-    /// Bosch's, up to 125 kPa.
+    /// Bosch, up to 125 kPa.
     Bmp388: Bmp3, bmp3::DATA_388;
-    /// Bosch's, up to 125 kPa.
+    /// Bosch, up to 125 kPa.
     Bmp390: Bmp3, bmp3::DATA_390;
-    /// Bosch's, up to 125 kPa.
+    /// Bosch, up to 125 kPa.
     Bmp581: Bmp5, bmp5::DATA_581;
-    /// Bosch's, gel-filled, up to 125 kPa.
+    /// Bosch, gel-filled, up to 125 kPa.
     Bmp585: Bmp5, bmp5::DATA_585;
-    /// ST's, up to 126 kPa.
+    /// ST, up to 126 kPa.
     Lps22hb: Lps22hb, lps22hb::DATA;
-    /// Infineon's, up to 120 kPa.
+    /// Infineon, up to 120 kPa.
     Dps310: Dps310, dps310::DATA;
 }
 
 impl Chip {
-    /// The chip of that name, in capitals or not.
+    /// The chip with this name; upper and lower case are equal.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let is_it = |chip: &&Self| chip.data().name.eq_ignore_ascii_case(name);

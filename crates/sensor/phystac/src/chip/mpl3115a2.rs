@@ -1,6 +1,7 @@
 //! NXP's MPL3115A2, in its barometer mode.
 //!
-//! Source: data sheet MPL3115A2 (Rev 3.0, 12/2013). It compensates on its own, and is read with a repeated START only.
+//! Source: data sheet MPL3115A2 (Rev 3.0, 12/2013). The chip compensates by itself. It must be read
+//! with a repeated START.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -11,7 +12,7 @@ use crate::conversion::{Counts, Sample};
 use crate::error::Error;
 use crate::line::{Line, u24_be};
 
-/// Status, pressure (3 bytes), temperature (2 bytes); the most significant first.
+/// Status, pressure (3 bytes), temperature (2 bytes); most significant byte first.
 const STATUS: u8 = 0x00;
 const WHO_AM_I: u8 = 0x0C;
 const DATA_EVENTS: u8 = 0x13;
@@ -22,12 +23,12 @@ const ONE_SHOT: u8 = 0x02;
 const RESET: u8 = 0x04;
 /// Bit of [`STATUS`]: a new pressure.
 const PRESSURE_READY: u8 = 0x04;
-/// In [`DATA_EVENTS`]: new pressures and temperatures raise flags.
+/// Value of [`DATA_EVENTS`]: new pressures and temperatures set flags.
 const ALL_EVENTS: u8 = 0x07;
 
-/// After a reset, µs: what Linux waits.
+/// Wait after a reset, µs: the value of Linux's driver.
 const RESET_US: u32 = 50_000;
-/// From standby to the first good sample at one sample a pressure, µs.
+/// Time from standby to the first valid sample at one sample per pressure, µs.
 const TURN_ON_US: u32 = 60_000;
 
 pub(super) const DATA: ChipData = ChipData {
@@ -54,7 +55,7 @@ pub(super) const DATA: ChipData = ChipData {
     },
 };
 
-/// An MPL3115A2, which measures once when told to.
+/// An MPL3115A2: one measurement for each command.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mpl3115a2 {
     speed: Speed,
@@ -68,14 +69,14 @@ impl Driver for Mpl3115a2 {
         line: &mut Line<'_, I, D>,
     ) -> Result<Self, Error<I::Error>> {
         line.identify(WHO_AM_I, data.identity).await?;
-        line.reset(&[CONTROL, RESET]).await?; // it resets its side of the bus, and acknowledges nothing more
+        line.reset(&[CONTROL, RESET]).await?; // the reset includes its bus interface, so it may not acknowledge
         line.pause_us(RESET_US).await;
         line.write(&[DATA_EVENTS, ALL_EVENTS]).await?;
         let driver = Self {
             speed: speed.unwrap_or(data.speeds[0]),
             data: [0; 5],
         };
-        // What it measures first is off: it is let pass.
+        // The first measurement is wrong and is discarded.
         line.write(&driver.control_bytes()).await?;
         line.pause_us(TURN_ON_US.max(driver.speed.conversion_us.unwrap_or_default()))
             .await;
@@ -106,7 +107,7 @@ impl Driver for Mpl3115a2 {
         }
         let [status, data @ ..] = line.read::<6>(STATUS).await?;
         if status & PRESSURE_READY == 0 {
-            return Err(Error::Restarted); // flags are raised since it was switched on, unless it lost that
+            return Err(Error::Restarted); // the flags are enabled at the start; without them the chip has lost its settings
         }
         self.data = data;
         Ok(Progress::Done)
@@ -127,7 +128,7 @@ impl Driver for Mpl3115a2 {
 }
 
 impl Mpl3115a2 {
-    /// One measurement in standby, as a barometer.
+    /// One measurement in standby, in barometer mode.
     const fn control_bytes(&self) -> [u8; 2] {
         [CONTROL, self.speed.code << 3 | ONE_SHOT]
     }

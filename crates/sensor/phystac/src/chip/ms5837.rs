@@ -1,7 +1,8 @@
 //! TE's MS5837-30BA and MS5837-02BA.
 //!
-//! Source: data sheets MS5837-30BA (REV C2, 12/2019) and MS5837-02BA (REV A8, 12/2019). There is no busy flag: time alone says that a
-//! conversion has ended, and what is read too early is zero.
+//! Source: data sheets MS5837-30BA (REV C2, 12/2019) and MS5837-02BA (REV A8, 12/2019). The chip
+//! has no busy flag: only the elapsed time says that a conversion has ended. A result that is read
+//! too early is zero.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
@@ -13,12 +14,13 @@ use crate::error::Error;
 use crate::line::{Line, u24_be};
 
 const RESET: u8 = 0x1E;
-/// The first of seven words of the PROM, two bytes each.
+/// The first of the seven words of the PROM, two bytes each.
 const PROM: u8 = 0xA0;
 const CONVERT_PRESSURE: u8 = 0x40;
 const CONVERT_TEMPERATURE: u8 = 0x50;
 const READ: u8 = 0x00;
-/// How long the PROM is loaded after a reset, µs: the data sheets give no number, public drivers wait 3 to 10 ms.
+/// Time to load the PROM after a reset, µs. The data sheets give no number; public drivers wait 3
+/// to 10 ms.
 const RESET_US: u32 = 10_000;
 
 const COST: Cost = Cost {
@@ -48,7 +50,7 @@ pub(super) const DATA_30BA: ChipData = ChipData {
 pub(super) const DATA_02BA: ChipData = ChipData {
     name: "MS5837-02BA",
     addresses: &[0x76],
-    range_pa: [1000.0, 200_000.0], // where the converter is linear; specified for 30 to 120 kPa
+    range_pa: [1000.0, 200_000.0], // the converter's linear range; specified for 30 to 120 kPa
     speeds: &[
         Speed::new(256, 560, Some(11.0), 0),
         Speed::new(512, 1100, Some(6.2), 2),
@@ -63,11 +65,12 @@ pub(super) const DATA_02BA: ChipData = ChipData {
     cost: COST,
 };
 
-/// Sensitivities that parts of a model have, by which they are told where word 0 names neither.
+/// Sensitivities that parts of the model have. They identify the model if word 0 names neither
+/// model.
 const SENSITIVITIES_30BA: core::ops::Range<u16> = 26_000..37_000;
 const SENSITIVITIES_02BA: core::ops::Range<u16> = 37_000..49_000;
 
-/// An MS5837, which converts pressure and temperature one after the other.
+/// An MS5837: it converts pressure and temperature one after the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ms5837 {
     data: &'static ChipData,
@@ -125,7 +128,7 @@ impl Driver for Ms5837 {
     ) -> Result<Progress, Error<I::Error>> {
         let counts = u24_be(line.read(READ).await?);
         if counts == 0 {
-            return Err(Error::ConversionStuck); // read too early, twice, or after a loss of power
+            return Err(Error::ConversionStuck); // read too early, or twice, or after a loss of power
         }
         match conversion {
             Conversion::Pressure => self.pressure = counts,
@@ -146,7 +149,7 @@ impl Driver for Ms5837 {
     }
 }
 
-/// Whether the PROM is of this model: by the product's number, else by the sensitivity.
+/// Whether the PROM belongs to this model, by the product number, or else by the sensitivity.
 fn is_model(prom: [u16; 7], data: &ChipData) -> bool {
     let (ours, others) = match data.name == DATA_30BA.name {
         true => (DATA_30BA.identity, SENSITIVITIES_02BA),
@@ -155,7 +158,7 @@ fn is_model(prom: [u16; 7], data: &ChipData) -> bool {
     prom[0] >> 5 & 0x7F == u16::from(ours) || !others.contains(&prom[1])
 }
 
-/// What a part was calibrated to: words 1 to 6 of its PROM.
+/// The calibration of a part: words 1 to 6 of its PROM.
 #[derive(Clone, Copy, Debug)]
 struct Calibration {
     is_30_bar: bool,
@@ -164,17 +167,18 @@ struct Calibration {
 }
 
 impl Calibration {
-    /// `None` if the words fail their check.
+    /// `None` if the words fail their CRC.
     fn of(prom: [u16; 7], is_30_bar: bool) -> Option<Self> {
         let [first, words @ ..] = prom;
-        let is_empty = words == [0; 6]; // which has the right check
+        let is_empty = words == [0; 6]; // whose CRC is correct
         (crc4(prom) == first >> 12 && !is_empty).then(|| Self {
             is_30_bar,
             c: words.map(i64::from),
         })
     }
 
-    /// Pressure, Pa, and temperature, °C: the data sheets' second order, without their last division, which would round.
+    /// Pressure, Pa, and temperature, °C, with the data sheets' second-order compensation, without
+    /// their last division, which would round.
     fn compensate(&self, pressure: u32, temperature: u32) -> (f32, f32) {
         let [c1, c2, c3, c4, c5, c6] = self.c;
         let difference = i64::from(temperature) - (c5 << 8);
@@ -221,7 +225,7 @@ impl Calibration {
     }
 }
 
-/// The check of the PROM's words, whose place in word 0 counts as zero.
+/// The CRC of the PROM's words. The field of word 0 that holds the CRC counts as zero.
 fn crc4(prom: [u16; 7]) -> u16 {
     let mut words = [0; 8];
     words[..7].copy_from_slice(&prom);
@@ -246,7 +250,7 @@ fn crc4(prom: [u16; 7]) -> u16 {
 mod tests {
     use super::*;
 
-    /// The data sheets' examples.
+    /// The examples of the data sheets.
     const PROM_30BA: [u16; 7] = [0x9340, 34_982, 36_352, 20_328, 22_354, 26_646, 26_146];
     const PROM_02BA: [u16; 7] = [0x52A0, 46_372, 43_981, 29_059, 27_842, 31_553, 28_165];
 

@@ -1,4 +1,4 @@
-//! A switch and eight barometers, as far as the drivers can tell, with a time of their own and faults on demand.
+//! An emulated switch with eight barometers, with its own time, and with faults on demand.
 
 #![allow(dead_code)] // each test binary uses its part
 
@@ -17,21 +17,21 @@ pub(crate) const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource:
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     pub(crate) is_present: bool,
-    /// Holds its lines low while its channel is open.
+    /// Whether it holds its lines low while its channel is open.
     pub(crate) is_shorted: bool,
-    /// Pressure that the next conversion finds when it is triggered, counts.
+    /// Pressure that the next conversion measures, counts.
     pub(crate) counts: i32,
-    /// Temperature that it finds, 1/256 °C.
+    /// Temperature that the next conversion measures, 1/256 °C.
     pub(crate) temperature: i16,
     pub(crate) conversion_ns: u64,
     pub(crate) configuration: u8,
     pub(crate) keeps_configuration: bool,
-    /// When the conversion under way ends, and what it will have found.
+    /// When the conversion in progress ends, and its result.
     converting: Option<(u64, [u8; 5])>,
     data: [u8; 5],
 }
 
-/// The wires and all that is on them.
+/// The wires and all parts on them.
 #[derive(Debug)]
 pub(crate) struct World {
     pub(crate) parts: Vec<Part>,
@@ -43,18 +43,18 @@ pub(crate) struct World {
     pub(crate) clocks: u64,
     /// Transactions so far.
     pub(crate) count: usize,
-    /// Transactions that fail, with what, and whether the parts see them nevertheless.
+    /// Transactions that fail, with which error, and whether the parts receive them nevertheless.
     pub(crate) failing: Range<usize>,
     pub(crate) failure: ErrorKind,
     pub(crate) failing_are_heard: bool,
     /// The transaction before which the switch loses its mask.
     pub(crate) brown_out_at: Option<usize>,
-    /// A hang that only a reset ends: every transaction fails.
+    /// Whether the bus hangs until a reset: every transaction fails.
     pub(crate) is_hung: bool,
     pub(crate) log: Vec<String>,
 }
 
-/// What the drivers and the test share.
+/// The state that the drivers and the test share.
 #[derive(Clone, Debug)]
 pub(crate) struct Bench(Rc<RefCell<World>>);
 
@@ -102,7 +102,7 @@ impl Bench {
         self.with(|world| std::mem::take(&mut world.log))
     }
 
-    /// The switch's RESET, and whatever else it takes.
+    /// Pulses the switch's RESET, and ends a hang.
     pub(crate) fn reset(&self) {
         self.with(|world| {
             world.mask = 0;
@@ -177,7 +177,7 @@ impl World {
 }
 
 impl Part {
-    /// Takes the part's power and gives it back.
+    /// Interrupts the part's power.
     pub(crate) fn restart(&mut self) {
         self.converting = None;
         self.data = [0; 5];

@@ -1,10 +1,11 @@
-//! Brings readings that lag behind onto the clock of the poses.
+//! Aligns lagging readings with the clock of the poses.
 
 use super::description::Description;
 use super::track::Track;
 
-/// Reads every taxel at the time of the row plus the taxel's lag, by linear interpolation; drops rows at the ends that have
-/// no reading on both sides of that time. A reading is usable where both its neighbours are.
+/// Takes every taxel's reading at the time of the row plus the taxel's lag, by linear
+/// interpolation. Drops rows at the ends that have no reading on both sides of that time. A reading
+/// is usable if both its neighbours are.
 pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track {
     let lags_s: Vec<f64> = description.taxels.iter().map(|taxel| taxel.lag_s).collect();
     if lags_s.iter().all(|&lag_s| lag_s == 0.0) {

@@ -1,17 +1,19 @@
-//! Rows at the start of a file that carry wrong times.
+//! Rows with wrong times at the start of a file.
 
 use super::description::Description;
 use super::table::Table;
 use crate::RecordingError;
 
-/// Steps in a row of the usual length that end the buffered rows.
+/// Number of usual steps in a row that end the buffered rows.
 const SETTLED_STEPS: usize = 20;
 
-/// How many rows to leave out at the start: the number that the description gives, then those that were read from a buffer.
+/// Number of rows to leave out at the start: the number given in the description, then the rows
+/// that were read from a buffer.
 ///
-/// A recorder that connects late first reads what its serial port has buffered, and stamps those rows with the time of reading:
-/// they follow each other much faster than the sensor measures. They last until 20 steps in a row are no shorter than half
-/// the median step; the row at the start of those steps still came out of the buffer.
+/// A recorder that connects late first reads what its serial port has buffered, and stamps those
+/// rows with the time of reading. They follow each other much faster than the sensor measures. They
+/// last until 20 steps in a row are at least half the median step. The row at the start of those
+/// steps still came from the buffer.
 pub(crate) fn leading_rows(
     table: &Table,
     times_s: &[f64],
@@ -86,7 +88,7 @@ mod tests {
     fn drops_rows_up_to_the_last_of_the_buffer() {
         let steps = |buffered: &[f64]| times(buffered.iter().copied().chain([0.06; 400]));
         assert_eq!(dropped(&steps(&[])).unwrap(), 0);
-        // A first time, 30 short steps and a pause amid them: 32 buffered rows.
+        // A first time, 30 short steps and a pause among them: 32 buffered rows.
         let mut buffered = vec![0.0; 1];
         buffered.extend([0.015; 20]);
         buffered.push(0.07);

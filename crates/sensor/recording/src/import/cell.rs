@@ -1,29 +1,30 @@
-//! What a cell says: a number, a reading that is missing, a clock's time, or a label.
+//! The content of a cell: a number, a missing reading, a time, or a label.
 
 use std::collections::HashMap;
 
 use chrono::{DateTime, NaiveDateTime, NaiveTime, Timelike};
 
-/// What a column is read as.
+/// How a column is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
-    /// A finite number. One that is missing leaves the row out, or is an error.
+    /// A finite number. If it is missing, the row is left out or it is an error.
     Number,
-    /// A finite number, or none: NaN then.
+    /// A finite number; NaN if missing.
     Reading,
-    /// A time of day, or a date and a time: s, a day wraps.
+    /// A time of day, or date and time, in s. A time of day wraps at midnight.
     Clock,
-    /// Any text: equal texts become equal numbers. One that is empty is NaN.
+    /// Any text: equal texts become equal numbers. An empty text is NaN.
     Label,
 }
 
 /// Seconds of a day.
 pub(crate) const DAY_S: f64 = 86_400.0;
 
-/// Words for a reading that is missing, in lower case.
+/// Words for a missing reading, in lower case.
 const MISSING: [&str; 8] = ["", "nan", "-nan", "na", "n/a", "null", "none", "--"];
 
-/// Date and time, as loggers and spreadsheets write them. Fractions may follow a point or a comma.
+/// Formats of date and time that loggers and spreadsheets write. A fraction may follow after a
+/// point or a comma.
 const DATES: [&str; 6] = [
     "%Y-%m-%dT%H:%M:%S%.f",
     "%Y-%m-%d %H:%M:%S%.f",
@@ -37,19 +38,19 @@ const DATES: [&str; 6] = [
 pub(crate) struct Cells<'a> {
     has_decimal_comma: bool,
     missing: Vec<&'a str>,
-    /// Words for missing readings that are numbers, such as -999.
+    /// Numbers that stand for a missing reading, such as -999.
     missing_numbers: Vec<f64>,
 }
 
-/// The labels of a column, each a number.
+/// The labels of a column, each with a number.
 #[derive(Default)]
 pub(crate) struct Labels(HashMap<String, u32>);
 
-/// Why a cell can't be read, after its name: "is `x`, expected a number".
+/// Why a cell cannot be read; it follows the cell's name: "is `x`, expected a number".
 pub(crate) type Problem = String;
 
 impl<'a> Cells<'a> {
-    /// `decimal` stands before the fraction of a number, `missing` are words for readings that are missing.
+    /// `decimal` is the decimal separator; `missing` are words for missing readings.
     pub(crate) fn new(decimal: char, missing: &'a [String]) -> Self {
         let missing: Vec<&str> = missing.iter().map(String::as_str).collect();
         Self {
@@ -59,7 +60,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The number of a cell, NaN where it is missing; `labels` are those of its column.
+    /// The number of a cell; NaN if missing. `labels` are those of its column.
     pub(crate) fn read(&self, cell: &[u8], kind: Kind, labels: &mut Labels) -> Result<f64, Problem> {
         let text = std::str::from_utf8(cell).unwrap_or("\u{fffd}");
         match kind {
@@ -108,7 +109,7 @@ impl<'a> Cells<'a> {
 }
 
 impl Labels {
-    /// The number of a text. Texts of the same number are the same label.
+    /// The number of a label. Texts of the same number are the same label.
     fn number(&mut self, text: &str) -> u32 {
         let name = text
             .parse::<f64>()
@@ -118,7 +119,7 @@ impl Labels {
     }
 }
 
-/// The cells of a line without blanks around them; where blanks separate, any number of them does.
+/// The cells of a line without blanks around them. If blanks separate, any number of them does.
 pub(super) fn cells(record: &csv::ByteRecord, blanks_separate: bool) -> impl Iterator<Item = &[u8]> {
     let cells = record.iter().map(<[u8]>::trim_ascii);
     cells.filter(move |cell| !(blanks_separate && cell.is_empty()))

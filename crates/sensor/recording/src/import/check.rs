@@ -1,4 +1,4 @@
-//! What has to hold of an import description.
+//! Checks of an import description.
 
 use std::collections::BTreeSet;
 
@@ -8,12 +8,12 @@ use twintac_config::{ConfigError, Document};
 use super::description::{Column, Description, JoinClock, Repeated, Split};
 use super::unit::{Pressure, Unit};
 
-/// Farthest that a quaternion's length may be from 1.
+/// Largest deviation of a quaternion's length from 1.
 pub(super) const UNIT_TOLERANCE: f64 = 1e-2;
 
 const FINITE: &str = "give a finite number";
 
-/// A field that parses but makes no sense.
+/// A field that can be parsed but is wrong.
 pub(super) struct Problem {
     pub(super) field: String,
     pub(super) problem: String,
@@ -43,7 +43,7 @@ fn require(
     }
 }
 
-/// The first field that makes no sense.
+/// Finds the first field that is wrong.
 pub(super) fn check(d: &Description) -> Result<(), Problem> {
     check_text(d)?;
     check_numbers(d)?;
@@ -66,7 +66,7 @@ fn check_joins(d: &Description) -> Result<(), Problem> {
         require(
             has_time && !matches!(d.presses, Split::Row),
             format!("join[{index}]"),
-            "stands in a description whose own files have no time",
+            "is given in a description whose own files have no time",
             "give the main file's `time` a column, or put the columns into one file",
         )?;
         require(
@@ -82,7 +82,7 @@ fn check_joins(d: &Description) -> Result<(), Problem> {
             !join.columns.is_empty() && unread.is_none(),
             field("columns"),
             unread.map_or("is empty".to_owned(), |name| {
-                format!("has `{name}`, which nothing is read of")
+                format!("has `{name}`, from which nothing is read")
             }),
             "give the columns that `x`, `y`, `z`, `rotation`, `force`, `presses` or `taxels` name and that are in this file",
         )?;
@@ -134,7 +134,7 @@ fn check_text(d: &Description) -> Result<(), Problem> {
     require(
         d.decimal != d.delimiter,
         "decimal",
-        "is what separates columns, too",
+        "is also the separator of columns",
         "such files have another delimiter, as in delimiter = \";\"",
     )
 }
@@ -163,9 +163,9 @@ fn check_readings(d: &Description) -> Result<(), Problem> {
         if are_counts {
             "is missing"
         } else {
-            "stands beside a unit of pressure"
+            "is given beside a unit of pressure"
         },
-        "counts need it, and nothing else has it",
+        "give it for counts only",
     )?;
     require(
         d.readings.kpa_per_count.is_none_or(f64::is_normal),
@@ -195,19 +195,19 @@ fn check_taxels(d: &Description) -> Result<(), Problem> {
         require(
             names.insert(&taxel.name),
             field("name"),
-            "is there twice",
+            "is given twice",
             "name each taxel once",
         )?;
         require(
             columns.insert(&taxel.column),
             field("column"),
-            format!("`{}` is another taxel's, too", taxel.column),
+            format!("`{}` is also the column of another taxel", taxel.column),
             "give each taxel a column of its own",
         )?;
         require(
             taxel.temperature.as_ref() != Some(&taxel.column),
             field("temperature"),
-            format!("`{}` is its readings, too", taxel.column),
+            format!("`{}` is also the column of its readings", taxel.column),
             "give the column of its temperature",
         )?;
         require(
@@ -307,7 +307,7 @@ fn check_load(d: &Description) -> Result<(), Problem> {
     require(
         !both,
         "weight_n",
-        "stands beside `force`",
+        "is given beside `force`",
         "give the measured force or the dead weight",
     )?;
     let weight = d.weight_n.unwrap_or(1.0);
@@ -324,7 +324,7 @@ fn check_presses(d: &Description) -> Result<(), Problem> {
     require(
         !(matches!(d.presses, Split::None) && d.zero.is_some()),
         "zero",
-        "stands where there are no presses",
+        "is given, but there are no presses",
         "leave it out: a log of readings alone keeps them as they are",
     )?;
     if let Split::ReturnToRest {

@@ -1,14 +1,16 @@
-//! The times of a file's rows: a counter that rolls over, a clock that passes midnight, and rows that were written in bursts.
+//! The times of a file's rows: counters that roll over, clocks that pass midnight, and rows that
+//! were written in bursts.
 
 use super::cell::{DAY_S, Kind};
 use super::description::{Repeated, TimeColumn};
 use super::table::Table;
 use super::unit::Time;
 
-/// A fall of at least this part of a counter's range is a roll-over; a smaller one is a time out of order.
+/// A decrease by at least this fraction of a counter's range is a roll-over. A smaller decrease is
+/// a time out of order.
 const ROLLED_OVER: f64 = 0.5;
 
-/// The time of each row, s: a counter that rolls over goes on, and a clock's first row is at 0.
+/// The time of each row, s. Roll-overs are undone. For a clock the first row is at 0.
 pub(crate) fn times_s(table: &Table, time: Option<&TimeColumn>) -> Vec<f64> {
     let Some(time) = time else {
         return vec![0.0; table.rows()];
@@ -18,7 +20,7 @@ pub(crate) fn times_s(table: &Table, time: Option<&TimeColumn>) -> Vec<f64> {
     };
     let is_clock = matches!(time.unit, Time::Clock);
     let counts = table.column(name, if is_clock { Kind::Clock } else { Kind::Number });
-    // Dates do not begin again at midnight.
+    // Dates do not wrap at midnight.
     let is_of_day = is_clock && counts.iter().all(|&count| count < DAY_S);
     let wraps_at = time.wraps_at.or(is_of_day.then_some(DAY_S));
     let mut times = unrolled(counts, wraps_at);
@@ -44,7 +46,7 @@ fn unrolled(counts: &[f64], wraps_at: Option<f64>) -> Vec<f64> {
     counts.iter().map(count).collect()
 }
 
-/// Spreads rows that have the same time: they were measured one after the other, and arrived together.
+/// Spreads rows with the same time: they were measured one after the other, and arrived together.
 pub(crate) fn spread(times_s: &mut [f64], repeated: Repeated) {
     let mut start = 0;
     let mut before_s = None;
@@ -58,7 +60,8 @@ pub(crate) fn spread(times_s: &mut [f64], repeated: Repeated) {
         let step_s = match repeated {
             Repeated::Error => return,
             Repeated::RateHz(rate_hz) => 1.0 / rate_hz,
-            // A burst took as long as the time since the one before; the first as long as the one after it.
+            // A burst covers the time since the one before. The first burst covers as much as the
+            // one after it.
             Repeated::Spread => {
                 let next_s = times_s.get(end).map(|next_s| next_s - at_s);
                 before_s
@@ -76,7 +79,7 @@ pub(crate) fn spread(times_s: &mut [f64], repeated: Repeated) {
     }
 }
 
-/// What may help against a time that does not increase.
+/// What may help if times do not increase.
 pub(crate) fn remedy(before: f64, now: f64, time: &TimeColumn) -> String {
     if now == before {
         return "rows that were written in bursts are read with `repeated = \"spread\"`, or `repeated = { rate_hz = … }`".to_owned();
@@ -91,7 +94,7 @@ pub(crate) fn remedy(before: f64, now: f64, time: &TimeColumn) -> String {
         Some(wraps_at) if time.wraps_at.is_none() => {
             format!("a counter that rolls over is read with `wraps_at = {wraps_at}`")
         }
-        _ => "if the log was started again, make it two files".to_owned(),
+        _ => "if the log was started again, split it into two files".to_owned(),
     }
 }
 
@@ -105,7 +108,7 @@ mod tests {
             unrolled(&[60_000.0, 65_000.0, 4_464.0, 9_464.0], Some(65_536.0)),
             [60_000.0, 65_000.0, 70_000.0, 75_000.0]
         );
-        // Out of order is not rolled over.
+        // A time out of order is not a roll-over.
         assert_eq!(unrolled(&[10.0, 9.0], Some(65_536.0)), [10.0, 9.0]);
         assert_eq!(unrolled(&[10.0, 1.0], None), [10.0, 1.0]);
     }

@@ -1,8 +1,8 @@
-//! The clock of one file on that of another, found from what both saw: presses.
+//! Finds the clock of one file on that of another from the presses that both contain.
 
 use std::collections::BTreeSet;
 
-/// What a clock's times are on another: `offset_s + rate · time_s`.
+/// A linear relation between two clocks: `offset_s + rate · time_s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
     pub(crate) offset_s: f64,
@@ -15,40 +15,40 @@ impl Clock {
     }
 }
 
-/// How much of touch a file saw, over its own times.
+/// Strength of contact over time, on a file's own clock.
 pub(crate) struct Activity {
-    /// Increasing, s.
+    /// Times, increasing, s.
     pub(crate) time_s: Vec<f64>,
-    /// Zero where nothing touches.
+    /// Strength of contact; zero without contact.
     pub(crate) touch: Vec<f64>,
 }
 
-/// A clock that was found, and how sure it is.
+/// A clock that was found, and its accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Found {
     pub(crate) clock: Clock,
-    /// How far single presses are from it, in the median, s.
+    /// Median deviation of single presses from it, s.
     pub(crate) residual_s: f64,
 }
 
-/// How much faster or slower than another a clock may be.
+/// Largest relative difference between the rates of two clocks.
 const MOST_DRIFT: f64 = 0.01;
-/// Bins of the first look.
+/// Number of bins of the first search.
 const BINS: usize = 1500;
-/// How much better than any other offset the best one must be.
+/// Any other offset must have a score below this fraction of the best one.
 const CLEARLY: f64 = 0.93;
-/// Bins around the best offset that may be lower and still belong to its peak.
+/// Number of bins within the peak of the best offset that may be lower.
 const PEAK_GAP: i64 = 4;
-/// The least correlation that is a match.
+/// Smallest correlation that counts as a match.
 const MATCHES: f64 = 0.6;
 
 /// Finds the clock of `other` on the clock of `main`.
 ///
-/// A first look finds the offset and the rate to a bin; then each stretch of time with touch in it gives the offset there, and a line through them
-/// (Theil and Sen) the clock.
+/// A first search finds offset and rate to within a bin. Then each stretch of time with contact
+/// gives the offset there, and a line through these offsets (Theil-Sen) gives the clock.
 ///
 /// # Errors
-/// What is wrong, for people to read: nothing alike in the two, or more than one offset that fits.
+/// A text for people: the two have nothing in common, or more than one offset fits.
 pub(crate) fn find(main: &Activity, other: &Activity) -> Result<Found, String> {
     let span_s = |activity: &Activity| match (activity.time_s.first(), activity.time_s.last()) {
         (Some(first), Some(last)) => last - first,
@@ -56,7 +56,7 @@ pub(crate) fn find(main: &Activity, other: &Activity) -> Result<Found, String> {
     };
     let longest_s = span_s(main).max(span_s(other));
     if span_s(main) <= 0.0 || span_s(other) <= 0.0 {
-        return Err("one of the two has no time that passes".to_owned());
+        return Err("the times of one of the two do not increase".to_owned());
     }
     let bin_s = longest_s / BINS as f64;
     let mut clock = look(main, other, bin_s)?;
@@ -65,7 +65,7 @@ pub(crate) fn find(main: &Activity, other: &Activity) -> Result<Found, String> {
     for within_s in [2.5 * bin_s, 0.6 * bin_s.max(8.0 * finest_s), 8.0 * finest_s] {
         let lags = lags(main, other, clock, within_s.min(2.0), finest_s);
         let Some((at_zero_s, slope, spread_s)) = line_through(&lags) else {
-            return Err("too few presses are alike in the two".to_owned());
+            return Err("too few presses match in the two".to_owned());
         };
         clock = Clock {
             offset_s: (1.0 - slope) * clock.offset_s - at_zero_s,
@@ -76,7 +76,7 @@ pub(crate) fn find(main: &Activity, other: &Activity) -> Result<Found, String> {
     Ok(Found { clock, residual_s })
 }
 
-/// The offset and the rate for which the two are most alike, to a bin.
+/// The offset and rate with the highest score, to within a bin.
 fn look(main: &Activity, other: &Activity, bin_s: f64) -> Result<Clock, String> {
     let main_from_s = main.time_s[0];
     let main_bins = binned(main, bin_s, 1.0);
@@ -90,7 +90,8 @@ fn look(main: &Activity, other: &Activity, bin_s: f64) -> Result<Clock, String> 
             let score = likeness(&main_bins, &other_bins, shift);
             let offset_s = main_from_s + shift as f64 * bin_s - rate * other.time_s[0];
             if score >= MATCHES {
-                // Where the middle of the other file comes to lie says which offset it is, whatever the rate.
+                // The offset is identified by where the middle of the other file lies, for all
+                // rates.
                 let middle_s =
                     offset_s + rate * 0.5 * (other.time_s[0] + other.time_s[other.time_s.len() - 1]);
                 scores.push((middle_s, score));
@@ -101,7 +102,7 @@ fn look(main: &Activity, other: &Activity, bin_s: f64) -> Result<Clock, String> 
         }
     }
     let Some((most, clock)) = best.filter(|(most, _)| *most >= MATCHES) else {
-        return Err("nothing is alike in the two; are there presses in both?".to_owned());
+        return Err("nothing matches in the two; are there presses in both?".to_owned());
     };
     let middle_s = clock.convert(0.5 * (other.time_s[0] + other.time_s[other.time_s.len() - 1]));
     match rival(&scores, middle_s, CLEARLY * most, bin_s) {
@@ -112,12 +113,13 @@ fn look(main: &Activity, other: &Activity, bin_s: f64) -> Result<Clock, String> 
     }
 }
 
-/// How much later than `best_s` another offset is at which a score is as high, apart from those around the best one, s. Scores have their offsets, s.
+/// Distance from `best_s` to another offset with a score above `high`, apart from the offsets in
+/// the best one's peak, s. `scores` are pairs of offset, s, and score.
 fn rival(scores: &[(f64, f64)], best_s: f64, high: f64, bin_s: f64) -> Option<f64> {
     let bin = |(at_s, _): &(f64, f64)| ((at_s - best_s) / bin_s).round() as i64;
     let as_high = scores.iter().filter(|(_, score)| *score > high);
     let bins: BTreeSet<i64> = as_high.map(bin).collect();
-    // The top of the peak: what is as high without a gap that counts.
+    // The peak of the best offset: all bins above `high` without a large gap.
     let goes_on = |edge: i64, step: i64| {
         (1..=PEAK_GAP)
             .map(|gap| edge + step * gap)
@@ -147,7 +149,8 @@ fn binned(activity: &Activity, bin_s: f64, rate: f64) -> Vec<f64> {
     sums
 }
 
-/// How alike two are with one shifted by so many bins, up to 1: their correlation where both are, and all touch of both elsewhere counts against it.
+/// Score of a shift by a number of bins, at most 1: the correlation in the overlap, reduced by
+/// contact of both outside of it.
 fn likeness(main: &[f64], other: &[f64], shift: i64) -> f64 {
     let from = shift.max(0) as usize;
     let to = (main.len() as i64).min(shift + other.len() as i64) as usize;
@@ -171,17 +174,20 @@ fn likeness(main: &[f64], other: &[f64], shift: i64) -> f64 {
         product += one * two;
     }
     let power = |signal: &[f64]| signal.iter().map(|value| value * value).sum::<f64>();
-    // A file that was begun later or ended earlier has not all presses: only the shorter one's must be there.
+    // A file that was started later or ended earlier lacks some presses. Only those of the shorter
+    // file must be there.
     let kept =
         (one_power / power(main).max(f64::MIN_POSITIVE)).max(two_power / power(other).max(f64::MIN_POSITIVE));
-    // About the means: presses that follow each other closely are half alike wherever they lie.
+    // Relative to the means: otherwise presses that follow each other closely would correlate at
+    // any shift.
     let n = (to - from) as f64;
     let variances = (one_power - one_sum * one_sum / n) * (two_power - two_sum * two_sum / n);
     let covariance = product - one_sum * two_sum / n;
     kept * covariance / variances.max(f64::MIN_POSITIVE).sqrt()
 }
 
-/// How much later the other's touch comes than the main one's, in stretches of time: when, s, and how much, s.
+/// The delay of the other file's contact relative to the main file's, in stretches of time: time,
+/// s, and delay, s.
 fn lags(main: &Activity, other: &Activity, clock: Clock, within_s: f64, finest_s: f64) -> Vec<(f64, f64)> {
     let mapped: Vec<f64> = other.time_s.iter().map(|time_s| clock.convert(*time_s)).collect();
     let from_s = main.time_s[0].max(mapped[0]);
@@ -208,7 +214,8 @@ fn lags(main: &Activity, other: &Activity, clock: Clock, within_s: f64, finest_s
     lags
 }
 
-/// The lag, in steps, at which one is most alike to the other, which reaches further on both sides by so many steps. `None` at an end.
+/// The lag, in steps, with the highest correlation. `there` extends `n_lags` steps further on both
+/// sides. `None` if the best lag is at an end.
 fn best_lag(here: &[f64], there: &[f64], n_lags: i64) -> Option<f64> {
     let mean = |signal: &[f64]| signal.iter().sum::<f64>() / signal.len() as f64;
     let here_mean = mean(here);
@@ -230,7 +237,7 @@ fn best_lag(here: &[f64], there: &[f64], n_lags: i64) -> Option<f64> {
     if best == 0 || best + 1 == scores.len() || scores[best] < MATCHES {
         return None;
     }
-    // The top of the parabola through the best three.
+    // The vertex of the parabola through the three best scores.
     let [before, top, after] = [scores[best - 1], scores[best], scores[best + 1]];
     let bend = before - 2.0 * top + after;
     let aside = if bend < 0.0 {
@@ -241,7 +248,7 @@ fn best_lag(here: &[f64], there: &[f64], n_lags: i64) -> Option<f64> {
     Some(best as f64 - n_lags as f64 + aside)
 }
 
-/// The line through points, robust against some that are off: its value at 0, its slope, and how far points are from it in the median.
+/// A robust line through points: its value at 0, its slope, and the median deviation of the points.
 fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
     if points.len() < 2 {
         return points.first().map(|(_, lag)| (*lag, 0.0, 0.0));
@@ -271,7 +278,7 @@ fn median_step_s(activity: &Activity) -> f64 {
     median(&mut steps).unwrap_or(0.01).max(1e-4)
 }
 
-/// A signal between its samples, asked at times that increase.
+/// A signal with linear interpolation, evaluated at increasing times.
 struct Resampled<'a> {
     time_s: &'a [f64],
     values: &'a [f64],
@@ -316,7 +323,7 @@ impl<'a> Resampled<'a> {
 mod tests {
     use super::*;
 
-    /// How hard presses of different depths press at a time, s.
+    /// Strength of contact at a time, s, for presses of different depths.
     fn touch(time_s: f64) -> f64 {
         let press = (time_s / 4.0).floor();
         let within_s = time_s - 4.0 * press - 0.5 - 0.3 * (press * 1.7).sin();
@@ -331,7 +338,7 @@ mod tests {
         let n = ((to_s - from_s) * rate_hz) as usize;
         let true_s: Vec<f64> = (0..n).map(|index| from_s + index as f64 / rate_hz).collect();
         Activity {
-            // Its own times: the clock converts them to the true ones.
+            // The file's own times; the clock converts them to true times.
             time_s: true_s
                 .iter()
                 .map(|time_s| (time_s - clock.offset_s) / clock.rate)
@@ -374,7 +381,7 @@ mod tests {
             time_s: main.time_s.clone(),
             touch: vec![0.0; main.time_s.len()],
         };
-        assert!(find(&main, &silent).unwrap_err().contains("nothing is alike"));
+        assert!(find(&main, &silent).unwrap_err().contains("nothing matches"));
         let alike = |from_s: f64| Activity {
             time_s: (0..6000).map(|index| 0.02 * f64::from(index)).collect(),
             touch: (0..6000)

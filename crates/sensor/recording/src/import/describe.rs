@@ -1,4 +1,4 @@
-//! Parses import descriptions, and merges in what they override for a file.
+//! Parses import descriptions, and applies their overrides for a file.
 
 use std::path::Path;
 
@@ -6,14 +6,14 @@ use super::check::check;
 use super::description::{Description, Split};
 use crate::RecordingError;
 
-/// Fields that hold for files whose names match.
+/// Fields for the files whose names match a pattern.
 #[derive(Clone, Debug)]
 struct Override {
     files: String,
     fields: toml::Table,
 }
 
-/// The description of a bench's files, with the fields that some of them override.
+/// The description of a test setup's files, with its overrides.
 #[derive(Clone, Debug)]
 pub(super) struct Descriptions {
     base: Description,
@@ -22,7 +22,7 @@ pub(super) struct Descriptions {
 }
 
 impl Descriptions {
-    /// Parses an import description; `file` names it in errors.
+    /// Parses an import description. `file` names it in errors.
     pub(super) fn parse(file: &str, text: &str) -> Result<Self, RecordingError> {
         let document = twintac_config::parse::<Description>(file, text)?;
         check(&document.value).map_err(|problem| problem.at(&document, ""))?;
@@ -34,7 +34,7 @@ impl Descriptions {
             let mut fields = fields.clone();
             let Some(toml::Value::String(files)) = fields.remove("files") else {
                 let hint = "name the files that it is for, as in files = \"gelA_*\"";
-                return Err(document.error(&field, "has no text `files`", hint).into());
+                return Err(document.error(&field, "has no `files`, a text", hint).into());
             };
             let merged = merge(&table, &fields).map_err(|e| {
                 document.error(
@@ -53,12 +53,12 @@ impl Descriptions {
         })
     }
 
-    /// Whether files hold presses, unless an override says otherwise.
+    /// Whether files contain presses, unless an override says otherwise.
     pub(super) fn has_presses(&self) -> bool {
         !matches!(self.base.presses, Split::None)
     }
 
-    /// The description with all overrides that match the file's name, later ones last.
+    /// The description for a file, with all overrides that match its name; later ones win.
     pub(super) fn for_file(&self, path: &Path) -> Result<Description, RecordingError> {
         let name = path
             .file_name()
@@ -70,10 +70,10 @@ impl Descriptions {
         if fields.is_empty() {
             return Ok(self.base.clone());
         }
-        // Each override was merged and checked on its own; several together can still contradict each other.
+        // Each override was merged and checked alone; several together can still be contradictory.
         let contradiction = |problem: String| RecordingError::Inconsistent {
             place: path.display().to_string(),
-            problem: format!("the overrides for it do not go together: {problem}"),
+            problem: format!("the overrides for it contradict each other: {problem}"),
         };
         let merged = merge(&self.table, &fields).map_err(|e| contradiction(e.message().to_owned()))?;
         check(&merged)
@@ -88,7 +88,7 @@ fn merge(base: &toml::Table, fields: &toml::Table) -> Result<Description, toml::
     merged.try_into()
 }
 
-/// Tables are merged field by field, everything else is replaced.
+/// Merges tables field by field. Everything else is replaced.
 fn merge_into(base: &mut toml::Table, fields: &toml::Table) {
     for (key, value) in fields {
         match (base.get_mut(key), value) {
@@ -100,7 +100,8 @@ fn merge_into(base: &mut toml::Table, fields: &toml::Table) {
     }
 }
 
-/// Whether a file name matches a pattern in which `*` stands for any text and `?` for one character.
+/// Whether a file name matches a pattern in which `*` stands for any text and `?` for one
+/// character.
 fn matches(pattern: &str, name: &str) -> bool {
     let mut rest = pattern.chars();
     match rest.next() {

@@ -1,4 +1,4 @@
-//! What an import description says, field by field.
+//! The fields of an import description.
 
 use std::collections::BTreeSet;
 
@@ -9,79 +9,84 @@ use super::cell::Kind;
 use super::unit::{Force, Length, Pressure, Temperature, Time, Unit};
 use crate::Provenance;
 
-/// One import description, after the overrides for a file were merged in. [`Import`](super::Import) documents it for users.
+/// An import description, with the overrides for a file applied. [`Import`](super::Import)
+/// documents it for users.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Description {
     /// Name of the sensor's description.
     pub(crate) sensor: String,
-    /// Where the numbers come from: `real`, `emulated` or `simulated`.
+    /// Provenance of the numbers: `real`, `emulated` or `simulated`.
     pub(crate) provenance: Provenance,
     /// Name of the indenter in the sensor's description.
     pub(crate) indenter: String,
-    /// What stands between columns; a comma unless given.
+    /// The separator of columns. Default: a comma.
     #[serde(default = "comma")]
     pub(crate) delimiter: char,
     /// Names of the columns of a file without a header line.
     pub(crate) columns: Option<Vec<String>>,
-    /// Lines to leave out before the header, or before the first row of a file without one.
+    /// Number of lines to skip before the header, or before the first row of a file without a
+    /// header.
     #[serde(default)]
     pub(crate) skip_lines: u64,
-    /// Lines that begin with this character are left out, such as `#`.
+    /// Lines that begin with this character are skipped, such as `#`.
     pub(crate) comment: Option<char>,
-    /// What stands before the fraction of a number: a point unless given, or a comma.
+    /// The decimal separator of numbers: a point or a comma. Default: a point.
     #[serde(default = "point")]
     pub(crate) decimal: char,
-    /// What stands in a cell for a reading that is missing, beside an empty cell, `NaN`, `NA`, `null`, `None` and `--`, in capitals or not.
+    /// Texts for a missing reading, in addition to an empty cell, `NaN`, `NA`, `null`, `None` and
+    /// `--` (upper and lower case are equal).
     #[serde(default)]
     pub(crate) missing: Vec<String>,
-    /// Whether to leave out rows in which anything else is missing: a time, a place or a force.
+    /// Whether to leave out rows in which a number other than a reading is missing: a time, a
+    /// position or a force.
     #[serde(default)]
     pub(crate) drop_incomplete_rows: bool,
-    /// Rows to leave out at the start of each file.
+    /// Number of rows to leave out at the start of each file.
     #[serde(default)]
     pub(crate) drop_rows: usize,
-    /// Whether to leave out rows at the start that come at less than half the usual time step, read from a buffer.
+    /// Whether to leave out rows at the start that were read from a buffer: they follow each other
+    /// in less than half the usual time step.
     #[serde(default)]
     pub(crate) drop_buffered: bool,
     /// Height of the unloaded gel above the board, mm.
     pub(crate) gel_top_mm: f64,
-    /// Time; without it each row stands for itself, and messages of a bag have their own.
+    /// The time column. If left out, rows have no time; messages of a bag have their own.
     pub(crate) time: Option<TimeColumn>,
-    /// Place along the gel's x axis.
+    /// Position along the gel's x axis.
     #[serde(default)]
     pub(crate) x: Column<Length>,
-    /// Place along the gel's y axis.
+    /// Position along the gel's y axis.
     #[serde(default)]
     pub(crate) y: Column<Length>,
-    /// Height of the tip, on a scale of its own.
+    /// Height of the tip, on its own scale.
     pub(crate) z: Option<Column<Length>>,
-    /// How the indenter is turned; upright unless given.
+    /// Rotation of the indenter. Default: upright.
     pub(crate) rotation: Option<Rotation>,
     /// Where that scale meets the gel.
     #[serde(default)]
     pub(crate) contact: Contact,
     /// Measured force of the indenter on the gel along -z.
     pub(crate) force: Option<Column<Force>>,
-    /// Weight of a dead weight that rests on the gel, N.
+    /// Weight of a dead weight on the gel, N.
     pub(crate) weight_n: Option<f64>,
-    /// What holds for the readings of all taxels.
+    /// Unit and range of all taxels' readings.
     pub(crate) readings: Readings,
-    /// What holds for the temperatures of all taxels.
+    /// Unit and scale of all taxels' temperatures.
     #[serde(default)]
     pub(crate) temperatures: Temperatures,
-    /// Which column is which taxel.
+    /// The column of each taxel.
     pub(crate) taxels: Vec<Taxel>,
-    /// How presses are told apart.
+    /// How a file is split into presses.
     pub(crate) presses: Split,
-    /// What the zero of each taxel is taken from, before each press.
+    /// How the zero of each taxel is found before each press.
     pub(crate) zero: Option<Zero>,
-    /// Which static readings are marked as not valid.
+    /// How outliers of static readings are marked as not valid.
     pub(crate) outliers: Option<Outliers>,
-    /// Other files of the same recording, each on a clock of its own.
+    /// Other files of the same recording, each with its own clock.
     #[serde(default, rename = "join")]
     pub(crate) joins: Vec<Join>,
-    /// Tables with `files`, a pattern of names, and any of the fields above for these files.
+    /// Tables with `files`, a pattern of file names, and any of the fields above for these files.
     #[serde(default, rename = "override")]
     pub(crate) overrides: Vec<toml::Table>,
 }
@@ -98,22 +103,22 @@ fn one() -> f64 {
     1.0
 }
 
-/// A column and the line from its numbers to the project's unit: number × scale / divide_by × unit + offset.
+/// A column and its conversion to mm, s or N: number × scale / divide_by × unit + offset.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "U: Unit + Deserialize<'de>"))]
 pub(crate) struct Column<U> {
-    /// Without a column the value is the offset, everywhere.
+    /// The column's name. If left out, the value is always the offset.
     pub(crate) column: Option<String>,
-    /// Its unit: `mm`, `um`, `s`, `ms`, `N` and the like.
+    /// The unit of its numbers: `mm`, `um`, `s`, `ms`, `N` and so on.
     #[serde(default)]
     pub(crate) unit: U,
-    /// What its numbers are multiplied with.
+    /// Factor of its numbers.
     #[serde(default = "one")]
     pub(crate) scale: f64,
-    /// What they are divided by.
+    /// Divisor of its numbers.
     #[serde(default = "one")]
     pub(crate) divide_by: f64,
-    /// What is added, in mm, s or N.
+    /// Added value, in mm, s or N.
     #[serde(default)]
     pub(crate) offset: f64,
 }
@@ -136,34 +141,36 @@ impl<U: Unit> Column<U> {
     }
 }
 
-/// The column of the time.
+/// The time column.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TimeColumn {
-    /// Without a column the time is the offset, everywhere.
+    /// The column's name. If left out, the time is always the offset.
     pub(crate) column: Option<String>,
-    /// Its unit: `s`, `ms`, `us`, `ns`; or `clock` for the time of day, such as 13:05:59.250, or a date and time, counted from the first row.
+    /// Its unit: `s`, `ms`, `us` or `ns`; or `clock` for a time of day, such as 13:05:59.250, or a
+    /// date and time, counted from the first row.
     #[serde(default)]
     pub(crate) unit: Time,
-    /// What its numbers are multiplied with.
+    /// Factor of its numbers.
     #[serde(default = "one")]
     pub(crate) scale: f64,
-    /// What they are divided by.
+    /// Divisor of its numbers.
     #[serde(default = "one")]
     pub(crate) divide_by: f64,
-    /// What is added, s.
+    /// Added value, s.
     #[serde(default)]
     pub(crate) offset: f64,
-    /// The number that would follow the largest one of a counter that then begins again at 0: 4294967296 for 32 bits. Clocks of a day need none.
+    /// The number at which a counter rolls over to 0: 4294967296 for 32 bits. A time of day needs
+    /// none.
     pub(crate) wraps_at: Option<f64>,
-    /// What several rows with the same time are: an `error` unless given; written in one burst, so that they are to be `spread` over the time since the burst before;
-    /// or measured at a rate: `{ rate_hz = 100.0 }`.
+    /// How rows with the same time are read: as an `error` (default); as a burst to `spread` over
+    /// the time since the burst before; or as measured at a rate: `{ rate_hz = 100.0 }`.
     #[serde(default)]
     pub(crate) repeated: Repeated,
 }
 
 impl TimeColumn {
-    /// Its column, and as what it is read.
+    /// Its column, and how it is read.
     pub(crate) fn wanted(&self) -> Option<(&str, Kind)> {
         let is_clock = matches!(self.unit, Time::Clock);
         Some((
@@ -172,42 +179,44 @@ impl TimeColumn {
         ))
     }
 
-    /// A count as a time, s.
+    /// A count converted to a time, s.
     pub(crate) fn convert(&self, count: f64) -> f64 {
         self.convert_step(count) + self.offset
     }
 
-    /// A difference of counts as a time, s.
+    /// A difference of counts converted to a time, s.
     pub(crate) fn convert_step(&self, count: f64) -> f64 {
         count * self.scale / self.divide_by * self.unit.factor()
     }
 }
 
-/// Another file of the same recording, with some of the columns.
+/// Another file of the same recording, which has some of the columns.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Join {
-    /// Its name, in the same folder; `{stem}` stands for the main file's name without its ending.
+    /// Its name, in the same folder. `{stem}` stands for the main file's name without its
+    /// extension.
     pub(crate) file: String,
-    /// The columns that are its, which the main file does not have.
+    /// The columns in this file. The main file does not have them.
     pub(crate) columns: Vec<String>,
-    /// Its time.
+    /// Its time column.
     pub(crate) time: TimeColumn,
-    /// Its clock: the `same` as the main file's unless given; `found` by the presses; or what makes main times of its own: `{ offset_s = 1.12, rate = 1.0 }`.
+    /// Its clock: the `same` as the main file's (default); `found` from the presses; or
+    /// `{ offset_s = 1.12, rate = 1.0 }`, which converts its times to the main file's.
     #[serde(default)]
     pub(crate) clock: JoinClock,
-    /// How far in time a row of it may be from one of the main file, s; 0.02 unless given.
+    /// Largest time between one of its rows and one of the main file, s. Default 0.02.
     #[serde(default = "within_s")]
     pub(crate) within_s: f64,
     /// Names of its columns, if it has no header line.
     pub(crate) header: Option<Vec<String>>,
-    /// As for the main file, whose is meant unless given.
+    /// As for the main file. Default: that of the main file.
     pub(crate) delimiter: Option<char>,
-    /// As for the main file, whose is meant unless given.
+    /// As for the main file. Default: that of the main file.
     pub(crate) skip_lines: Option<u64>,
-    /// As for the main file, whose is meant unless given.
+    /// As for the main file. Default: that of the main file.
     pub(crate) comment: Option<char>,
-    /// As for the main file, whose is meant unless given.
+    /// As for the main file. Default: that of the main file.
     pub(crate) decimal: Option<char>,
 }
 
@@ -215,14 +224,14 @@ fn within_s() -> f64 {
     0.02
 }
 
-/// What the times of a joined file are on the main file's clock.
+/// How times of a joined file are converted to the main file's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum JoinClock {
-    /// The same.
+    /// They are the same.
     #[default]
     Same,
-    /// Whatever makes the presses in both the same.
+    /// By the clock with which the presses in both files coincide.
     Found,
     /// `offset_s + rate · time`.
     #[serde(untagged)]
@@ -234,7 +243,7 @@ pub(crate) enum JoinClock {
 }
 
 impl Join {
-    /// How its text is written.
+    /// The layout of its text.
     pub(crate) fn layout(&self, main: &Description) -> Description {
         Description {
             columns: self.header.clone(),
@@ -247,27 +256,27 @@ impl Join {
     }
 }
 
-/// What several rows with the same time are.
+/// How rows with the same time are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Repeated {
-    /// An error.
+    /// As an error.
     #[default]
     Error,
-    /// Rows that arrived together, and were measured in the time since those before.
+    /// As rows that arrived together, and were measured in the time since the rows before.
     Spread,
-    /// Rows that arrived together, and were measured at a rate: with `rate_hz`.
+    /// As rows that arrived together, and were measured at a rate; with `rate_hz`.
     #[serde(rename = "rate_hz")]
     RateHz(f64),
 }
 
-/// The columns of the indenter's rotation, a quaternion in the gel's frame.
+/// The columns of the indenter's rotation: a quaternion in the gel's frame.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Rotation {
     /// Columns of x, y, z and w.
     pub(crate) columns: [String; 4],
-    /// What they say where the indenter is upright, as its description has it; [0, 0, 0, 1] unless given.
+    /// Their values for the upright indenter, as its description has it. Default [0, 0, 0, 1].
     #[serde(default = "identity")]
     pub(crate) upright: [f64; 4],
 }
@@ -276,13 +285,13 @@ fn identity() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
 }
 
-/// Where the z column's scale meets the gel.
+/// Where the scale of the z column meets the gel.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Contact {
-    /// The z at which the tip touches the gel, on the z column's own scale, mm.
+    /// The z at which the tip touches the gel, on the z column's scale, mm.
     pub(crate) z_mm: f64,
-    /// `up` unless given; `down` if the scale grows downwards.
+    /// `up` (default), or `down` if the scale increases downwards.
     #[serde(default)]
     pub(crate) z_points: Direction,
 }
@@ -295,15 +304,16 @@ pub(crate) enum Direction {
     Down,
 }
 
-/// What holds for the readings of all taxels.
+/// Unit and range of all taxels' readings.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Readings {
-    /// Unit of the readings: `Pa`, `hPa`, `kPa`, `mbar`, `bar`, `psi`; or `counts` of a converter.
+    /// Unit of the readings: `Pa`, `hPa`, `kPa`, `mbar`, `bar` or `psi`; or `counts` of a
+    /// converter.
     pub(crate) unit: Pressure,
     /// Pressure of one count, kPa.
     pub(crate) kpa_per_count: Option<f64>,
-    /// Readings outside, in the file's own numbers, cannot be used.
+    /// Range of usable readings, in the file's own numbers.
     #[serde(default = "everything")]
     pub(crate) usable: [f64; 2],
 }
@@ -312,15 +322,15 @@ fn everything() -> [f64; 2] {
     [f64::NEG_INFINITY, f64::INFINITY]
 }
 
-/// What holds for the temperatures of all taxels.
+/// Unit and scale of all taxels' temperatures.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct Temperatures {
-    /// The column of a thermometer that stands for all taxels that have no column of their own.
+    /// The column of a thermometer for all taxels without a temperature column of their own.
     pub(crate) column: Option<String>,
     /// Unit of all temperatures: `C`, `K` or `F`.
     pub(crate) unit: Temperature,
-    /// What their numbers are multiplied with.
+    /// Factor of their numbers.
     pub(crate) scale: f64,
 }
 
@@ -343,41 +353,42 @@ pub(crate) struct Taxel {
     pub(crate) column: String,
     /// The column of its temperature.
     pub(crate) temperature: Option<String>,
-    /// What its numbers are multiplied with.
+    /// Factor of its numbers.
     #[serde(default = "one")]
     pub(crate) scale: f64,
-    /// What is added, kPa.
+    /// Added value, kPa.
     #[serde(default)]
     pub(crate) offset_kpa: f64,
-    /// How much later than the pose of the same row the taxel is to be read, s.
+    /// Time by which the taxel's reading lags behind the pose of the same row, s.
     #[serde(default)]
     pub(crate) lag_s: f64,
 }
 
-/// How presses are told apart.
+/// How a file is split into presses.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "split", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Split {
-    /// The tip leaves its rest, at `rest_mm` of the z column's scale, and returns to it.
+    /// A press lasts from the tip's leaving its rest position, at `rest_mm` on the z column's
+    /// scale, to its return.
     ReturnToRest {
-        /// Where the tip rests, mm on the z column's scale.
+        /// Rest position of the tip, mm on the z column's scale.
         #[serde(default)]
         rest_mm: f64,
-        /// How far from there it still rests, mm.
+        /// Largest distance from it at which the tip is still at rest, mm.
         #[serde(default = "tolerance_mm")]
         tolerance_mm: f64,
-        /// Most time at rest, in the same place, that is kept before and after, s.
+        /// Longest time at rest at the same location that is kept before and after the press, s.
         #[serde(default = "one")]
         keep_rest_s: f64,
     },
-    /// A column has another number or text for each press. Rows without one belong to none.
+    /// A column has another number or text for each press. Rows without one belong to no press.
     Column {
         /// The column.
         column: String,
     },
-    /// Every row is a press of its own, static.
+    /// Every row is a static press of its own.
     Row,
-    /// There are none: the log has readings alone.
+    /// There are no presses: the log has only readings.
     None,
 }
 
@@ -385,36 +396,38 @@ fn tolerance_mm() -> f64 {
     0.005
 }
 
-/// Which frames before the contact are the zero of each press: the last `window_s` before the tip comes closer to the gel
-/// than `above_contact_mm`.
+/// The frames before contact that give the zero of each press: the last `window_s` before the tip
+/// is closer to the gel than `above_contact_mm`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Zero {
-    /// Height above the contact from which on the tip is near, mm.
+    /// Height above contact below which the tip is near, mm.
     pub(crate) above_contact_mm: f64,
-    /// How long before that, s.
+    /// Duration before that, s.
     pub(crate) window_s: f64,
 }
 
-/// Which static readings are outliers: farther from the median of the neighbours than `jump` of the taxel's largest reading.
+/// Outliers among static readings: those that differ from the median of their neighbours by more
+/// than `jump` times the taxel's largest reading.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Outliers {
-    /// How far neighbours are, mm.
+    /// Largest distance of neighbours, mm.
     pub(crate) within_mm: f64,
-    /// How far a reading may be from the neighbours' median, over the taxel's largest.
+    /// Largest difference from the neighbours' median, as a fraction of the taxel's largest
+    /// reading.
     pub(crate) jump: f64,
 }
 
 impl Readings {
-    /// One of the file's numbers, kPa.
+    /// The file's unit of readings in kPa.
     pub(crate) fn kpa(&self) -> f64 {
         self.kpa_per_count.unwrap_or_else(|| self.unit.factor())
     }
 }
 
 impl Description {
-    /// Whether its columns are those of a bag, whose messages have times of their own.
+    /// Whether its columns are those of a bag, whose messages have their own times.
     pub(crate) fn is_of_bag(&self) -> bool {
         self.taxels.iter().all(|taxel| is_bag_column(&taxel.column))
     }
@@ -425,7 +438,7 @@ impl Description {
         own.or(self.temperatures.column.as_deref())
     }
 
-    /// All columns that are read, and as what.
+    /// All columns that are read, and how.
     pub(crate) fn wanted(&self) -> BTreeSet<(&str, Kind)> {
         let readings = self
             .taxels

@@ -1,16 +1,16 @@
-//! Where a file's columns are, and what may help where they are not found.
+//! Finds a file's columns, and what may help if they are not found.
 
 use super::cell::cells;
 use super::description::Description;
 use crate::RecordingError;
 
-/// Lines in which a header is looked for.
+/// Number of lines in which a header is searched.
 const LINES: usize = 100;
 
-/// Separators that files are found with.
+/// Separators that files are known to have.
 const DELIMITERS: [(u8, &str); 4] = [(b',', ","), (b';', ";"), (b'\t', "\\t"), (b' ', " ")];
 
-/// The place of a column, which must be there once.
+/// The position of a column, which must exist exactly once.
 pub(super) fn place(
     file: &str,
     line: u64,
@@ -51,7 +51,8 @@ pub(super) fn place(
     }
 }
 
-/// What to set so that the columns are found: another separator, or lines that stand before the header.
+/// The setting with which the columns are found: another separator, or lines to skip before the
+/// header.
 pub(super) fn remedy(
     text: &[u8],
     skipped_lines: u64,

@@ -1,4 +1,4 @@
-//! Columns of another file of the same recording, on a clock of its own.
+//! Joins columns of another file of the same recording, which has its own clock.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -13,8 +13,8 @@ use super::table::Table;
 use super::unit::Unit;
 use crate::RecordingError;
 
-/// Puts the columns of other files beside the rows of a table, whose times are given, and leaves rows out that have no partner. What was done, for people
-/// to read.
+/// Adds the columns of other files to the rows of a table whose times are given. Rows without a
+/// partner are left out. Returns notes for people.
 pub(crate) fn join(
     path: &Path,
     table: &mut Table,
@@ -86,7 +86,7 @@ pub(crate) fn join(
     Ok(notes)
 }
 
-/// The file beside another one: `{stem}` stands for that one's name without its ending.
+/// The path of the joined file. `{stem}` stands for the main file's name without its extension.
 fn beside(path: &Path, join: &Join) -> PathBuf {
     let stem = path
         .file_stem()
@@ -99,9 +99,9 @@ fn refused(file: &str, join: &Join, problem: &str) -> RecordingError {
         file: file.to_owned(),
         problem: match join.clock {
             JoinClock::Found => format!(
-                "its clock is not found: {problem}; give it as `clock = {{ offset_s = 1.12, rate = 1.0 }}`: what is added to its times, s, and what they are multiplied with before"
+                "its clock is not found: {problem}; give it as `clock = {{ offset_s = 1.12, rate = 1.0 }}`: its times are multiplied by `rate`, then `offset_s` is added"
             ),
-            _ => format!("{problem}; `clock = \"found\"` finds how far its clock is off, by the presses"),
+            _ => format!("{problem}; `clock = \"found\"` finds its clock from the presses"),
         },
     }
 }
@@ -109,7 +109,7 @@ fn refused(file: &str, join: &Join, problem: &str) -> RecordingError {
 fn said(file: &str, found: &Found) -> String {
     let Found { clock, residual_s } = found;
     format!(
-        "{file}: its times become those of the readings as {:.6} × time {:+.4} s, found by the presses; single presses are {:.1} ms off in the median",
+        "{file}: its times become those of the readings as {:.6} × time {:+.4} s, found from the presses; the median deviation of a press is {:.1} ms",
         clock.rate,
         clock.offset_s,
         1e3 * residual_s
@@ -133,7 +133,7 @@ fn increases(table: &Table, times_s: &[f64], join: &Join) -> Result<(), Recordin
     })
 }
 
-/// The row that is nearest in time, if one is near enough.
+/// The row nearest in time, if it is near enough.
 fn nearest(times_s: &[f64], time_s: f64, within_s: f64) -> Option<usize> {
     let after = times_s.partition_point(|other_s| *other_s < time_s);
     let near = [after.checked_sub(1), (after < times_s.len()).then_some(after)];
@@ -145,7 +145,8 @@ fn nearest(times_s: &[f64], time_s: f64, within_s: f64) -> Option<usize> {
     (distance_s(&nearest) <= within_s).then_some(nearest)
 }
 
-/// How much of touch a file's rows saw: by its readings, else by its force, else by how deep the indenter is.
+/// Strength of contact in a file's rows: from its readings, else its force, else the indenter's
+/// depth.
 fn touch(table: &Table, description: &Description) -> Vec<f64> {
     let mut touch = vec![0.0; table.rows()];
     let mut add = |numbers: &[f64]| {
@@ -188,7 +189,8 @@ fn numbers<U: Unit>(table: &Table, column: &Column<U>) -> Option<Vec<f64>> {
     (!numbers.is_empty()).then(|| numbers.iter().map(|number| column.convert(*number)).collect())
 }
 
-/// What a sensor says at rest: the middle of the shortest range with a quarter of its numbers. A median is none where it is pressed half of the time.
+/// The value of a sensor at rest: the middle of the shortest range with a quarter of its numbers. A
+/// median would not do, because the sensor may be pressed half of the time.
 fn at_rest(numbers: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = numbers
         .iter()
@@ -204,7 +206,7 @@ fn at_rest(numbers: &[f64]) -> f64 {
 }
 
 impl Description {
-    /// The columns that are read of a joined file; of the main one without it.
+    /// The columns that are read from a joined file, or from the main file if `join` is `None`.
     pub(crate) fn wanted_of<'a>(&'a self, join: Option<&'a Join>) -> BTreeSet<(&'a str, Kind)> {
         let all = self.wanted();
         let gives = |join: &Join, name: &str| join.columns.iter().any(|given| given == name);
@@ -216,7 +218,7 @@ impl Description {
             Some(join) => {
                 let mut wanted: BTreeSet<(&'a str, Kind)> =
                     all.into_iter().filter(|(name, _)| gives(join, name)).collect();
-                // Its own time, whatever the main file's is called.
+                // Its own time column, whatever the main file's is called.
                 if let Some(time) = join.time.wanted() {
                     wanted.insert(time);
                 }

@@ -1,4 +1,4 @@
-//! Reads the CSV files and bags of any bench through a description of what their columns mean.
+//! Reads CSV files and bags of any test setup, with a description of what their columns mean.
 
 mod align;
 mod bag;
@@ -35,7 +35,8 @@ use crate::{Control, Frames, Press, Recording, RecordingError};
 use open::open;
 use track::Track;
 
-/// How to read the CSV files and bags of one bench: which column means what, in which unit, and how presses are told apart.
+/// Describes how to read the CSV files and bags of a test setup: the meaning and unit of each
+/// column, and how the file is split into presses.
 ///
 /// ```
 /// let text = r##"
@@ -90,16 +91,18 @@ use track::Track;
 /// # Ok::<(), twintac_recording::RecordingError>(())
 /// ```
 ///
-/// With `return-to-rest`, a press lasts from the tip's leaving its rest to its return, with up to `keep_rest_s` more on both
-/// sides while the tip stands at the same place. A press that is in the gel when its file starts or ends is dropped, and the
-/// summary says so; one that has left the gel when the file ends is kept. A press without a frame to take the zero from is
-/// dropped likewise.
+/// With `return-to-rest`, a press lasts from the tip's leaving its rest position to its return. Up
+/// to `keep_rest_s` more is kept on both sides while the tip stays at the same location. A press
+/// that is in the gel when its file starts or ends is dropped, and the summary says so. A press
+/// that has left the gel when the file ends is kept. A press without a frame for its zero is
+/// dropped as well.
 ///
-/// Texts are UTF-8, UTF-16 or Latin-1. A last row that the logger did not finish is left out, as are zero bytes after it; the summary says so. A reading that is
-/// missing is not valid, and NaN; the rest of its row is there.
+/// Texts are UTF-8, UTF-16 or Latin-1. A last row that the logger did not finish is left out, and
+/// zero bytes after it as well; the summary says so. A missing reading is NaN and not valid; the
+/// rest of its row is kept.
 ///
-/// A lagging taxel's readings are interpolated linearly onto the clock of the poses; a reading is valid if both neighbours
-/// are. Rows at the ends of a file that have no such neighbours are dropped.
+/// The readings of a lagging taxel are interpolated linearly onto the clock of the poses. A reading
+/// is valid if both neighbours are. Rows at the ends of a file without such neighbours are dropped.
 #[derive(Clone, Debug)]
 pub struct Import {
     descriptions: Descriptions,
@@ -107,11 +110,11 @@ pub struct Import {
 }
 
 impl Import {
-    /// Parses an import description; `file` names it in errors.
+    /// Parses an import description. `file` names it in errors.
     ///
     /// # Errors
     ///
-    /// What is wrong, with the line and the field.
+    /// A field is wrong; the error names line and field.
     pub fn parse(file: &str, text: &str) -> Result<Self, RecordingError> {
         let descriptions = Descriptions::parse(file, text)?;
         Ok(Self {
@@ -120,11 +123,15 @@ impl Import {
         })
     }
 
-    /// Reads bags with `read_bag` as well: recordings of several topics, whose columns are `/topic:field`.
+    /// Also reads bags with `read_bag`: recordings of several topics, whose columns are
+    /// `/topic:field`.
     ///
-    /// Rows are the messages of the first taxel's topic, or of that of `time`. Times of a topic are those of its headers, else those at which it was recorded; without
-    /// `time`, they count from the first row. Numbers of other topics lie on the line between two messages around a row that are at most 20 ms, or two periods of
-    /// their topic, apart; a row without such messages is left out, and a reading is missing there. Where `time` is `/topic:log_time`, times of all topics are those at
+    /// The rows are the messages of the first taxel's topic, or of the topic of `time`. The times
+    /// of a topic are those in its headers, or else those at which it was recorded. Without `time`,
+    /// they count from the first row. Numbers of other topics are interpolated linearly between two
+    /// messages around a row, which may be at most 20 ms, or two periods of their topic, apart. A
+    /// row without such messages is left out. For columns of readings the row is kept instead, and
+    /// the reading is missing. If `time` is `/topic:log_time`, the times of all topics are those at
     /// which they were recorded.
     #[must_use]
     pub fn with_bags(self, read_bag: ReadBag) -> Self {
@@ -138,23 +145,26 @@ impl Import {
     ///
     /// # Errors
     ///
-    /// The file cannot be read, a column is missing or there twice, a cell is no finite number, times do not increase, or no presses are found:
-    /// with file, line and column. No press reaches the gel, or readings are of about the pressure of the air and there is no `zero`.
+    /// The file cannot be read, a column is missing or occurs twice, a cell is not a finite number,
+    /// times do not increase, or no presses are found; the error names file, line and column. Also
+    /// if no press reaches the gel, or if readings are near atmospheric pressure and there is no
+    /// `zero`.
     pub fn read_csv(&self, path: &Path) -> Result<(Recording, ImportSummary), RecordingError> {
         self.read_all(std::slice::from_ref(&path))
     }
 
-    /// Whether the files hold presses; else they hold readings alone.
+    /// Whether the files contain presses. Otherwise they contain only readings.
     #[must_use]
     pub fn has_presses(&self) -> bool {
         self.descriptions.has_presses()
     }
 
-    /// Reads the frames of a CSV file that holds no presses, as its description says: `presses = { split = "none" }`. Readings are in kPa, and as they
-    /// are: nothing is taken off.
+    /// Reads the frames of a CSV file without presses, for a description with
+    /// `presses = { split = "none" }`. Readings are in kPa and unchanged: no zero is subtracted.
     ///
     /// # Errors
-    /// As [`read_csv`](Self::read_csv). [`RecordingError::Inconsistent`]: the description has presses.
+    /// See [`read_csv`](Self::read_csv). [`RecordingError::Inconsistent`]: the description has
+    /// presses.
     pub fn read_frames(&self, path: &Path) -> Result<(Frames, FileSummary), RecordingError> {
         let description = self.descriptions.for_file(path)?;
         if !matches!(description.presses, Split::None) {
@@ -168,11 +178,13 @@ impl Import {
         Ok((frames, summary))
     }
 
-    /// Reads CSV files of one sensor into one recording, in the order of their paths whatever the order given.
+    /// Reads CSV files of one sensor into one recording, in the order of their paths, whatever the
+    /// order given.
     ///
     /// # Errors
     ///
-    /// As [`read_csv`](Self::read_csv); or the files differ in sensor, taxels or provenance, or share a name.
+    /// See [`read_csv`](Self::read_csv); also if the files differ in sensor, taxels or provenance,
+    /// or have the same name.
     pub fn read_all<P: AsRef<Path>>(
         &self,
         paths: &[P],
@@ -213,7 +225,7 @@ impl Import {
     }
 }
 
-/// The rows of a file on the clock of the poses, and what was left out of it so far.
+/// The rows of a file on the clock of the poses, and a summary of what was left out so far.
 fn read_track(
     path: &Path,
     description: &Description,

@@ -1,4 +1,4 @@
-//! A file as a table, whatever it is.
+//! Opens a file of any kind as a table.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -9,7 +9,8 @@ use super::description::{Description, Split, TimeColumn};
 use super::table::Table;
 use crate::RecordingError;
 
-/// Reads columns of a file: a bag, if there is what reads it, or a text that is as described. `time` is that of the file's rows.
+/// Reads columns of a file: a bag, if a reader for bags is given and accepts it, or else a text
+/// with the described layout. `time` is the time column of the file's rows.
 pub(super) fn open(
     path: &Path,
     description: &Description,
@@ -24,7 +25,7 @@ pub(super) fn open(
         if !has_time && !matches!(description.presses, Split::Row) && path.is_file() {
             return Err(RecordingError::Bag {
                 file,
-                problem: "is no bag (MCAP), and only a bag needs no `time`; name the column of the time"
+                problem: "is not a bag (MCAP), and only a bag needs no `time`; name the column of the time"
                     .to_owned(),
             });
         }
@@ -35,7 +36,7 @@ pub(super) fn open(
         return Err(RecordingError::Bag {
             file,
             problem: format!(
-                "its numbers are {provenance}, as it says itself, and the description has `provenance = \"{}\"`",
+                "the file says that its numbers are {provenance}, but the description has `provenance = \"{}\"`",
                 description.provenance
             ),
         });

@@ -1,13 +1,14 @@
-//! Marks static readings that leap out of their neighbours.
+//! Marks outliers among static readings.
 
 use super::description::Outliers;
 use crate::Press;
 
-/// Fewest neighbours that can tell whether a reading leaps out.
+/// Smallest number of neighbours for a decision.
 const FEWEST_NEIGHBOURS: usize = 3;
 
-/// Marks readings as not valid that differ from the median of the readings within `within_mm` by more than `jump` times the
-/// taxel's largest reading (the 99.9th percentile, so that an outlier does not hide itself); returns how many.
+/// Marks readings as not valid that differ from the median of the readings within `within_mm` by
+/// more than `jump` times the taxel's largest reading. The largest reading is the 99.9th
+/// percentile, so that an outlier does not hide itself. Returns the number of marked readings.
 pub(crate) fn mark(presses: &mut [Press], outliers: Outliers) -> usize {
     let places: Vec<_> = presses
         .iter()

@@ -1,4 +1,5 @@
-//! Whether presses and readings can be what the description says: what is not would end as figures that mean nothing.
+//! Checks that presses and readings are plausible for the description. Implausible ones would give
+//! meaningless results.
 
 use std::ops::Range;
 
@@ -6,10 +7,11 @@ use super::description::{Description, Split};
 use super::track::Track;
 use crate::RecordingError;
 
-/// Readings between these are absolute ones of an untouched sensor: the pressure of the air, kPa.
+/// Absolute readings of an untouched sensor are in this range: atmospheric pressure, kPa.
 const AIR_KPA: Range<f64> = 80.0..115.0;
 
-/// Refuses presses of which none reaches the gel, and readings of about the pressure of the air that nothing is taken off.
+/// Refuses a file in which no press reaches the gel, and readings near atmospheric pressure from
+/// which no zero is subtracted.
 pub(crate) fn check(
     file: &str,
     track: &Track,
@@ -22,7 +24,7 @@ pub(crate) fn check(
             problem,
         })
     };
-    // A dead weight lies on the gel; rows have no way down.
+    // A dead weight lies on the gel and has no approach.
     let has_heights = description.z.is_some() && description.weight_n.is_none() && !presses.is_empty();
     let rows = presses.iter().cloned().flatten();
     let deepest_mm = rows.map(|row| track.height_mm[row]).fold(f64::INFINITY, f64::min);
@@ -44,12 +46,12 @@ pub(crate) fn check(
             let (_, median_kpa, _) = kpa.select_nth_unstable_by(middle, f64::total_cmp);
             if AIR_KPA.contains(median_kpa) {
                 let hint = if matches!(description.presses, Split::Row) {
-                    "take its reading without touch off with `offset_kpa`"
+                    "subtract its untouched reading with `offset_kpa`"
                 } else {
-                    "give `zero`, from which frames before each press its reading without touch is taken"
+                    "give `zero`, which says from which frames before each press its untouched reading is taken"
                 };
                 return refuse(format!(
-                    "the readings of `{}` have a median of {median_kpa:.1} kPa, the pressure of the air, and readings are what touch adds to it; {hint}",
+                    "the readings of `{}` have a median of {median_kpa:.1} kPa, the pressure of the air, but readings are relative to it; {hint}",
                     line.name
                 ));
             }

@@ -1,4 +1,4 @@
-//! Tells the presses of one file apart.
+//! Splits one file into presses.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::description::Split;
 use super::summary::FileSummary;
 use super::track::Track;
 
-/// Farthest that a tip at rest in one place strays, mm.
+/// Largest movement of a tip that is at rest at one location, mm.
 const SAME_PLACE_MM: f64 = 0.005;
 
 /// The rows of each press, in order.
@@ -56,7 +56,8 @@ pub(crate) fn presses(track: &Track, split: &Split, summary: &mut FileSummary) -
     }
 }
 
-/// Adds the rows at rest in the same place, up to a time, on both sides; rows between two presses go to the later one first.
+/// Adds rows at rest at the same location on both sides, up to a time. Rows between two presses may
+/// belong to both.
 fn with_rest(track: &Track, away: &Range<usize>, limits: Range<usize>, keep_rest_s: f64) -> Range<usize> {
     let same_place = |row: usize, as_row: usize| {
         (track.x_mm[row] - track.x_mm[as_row]).abs() <= SAME_PLACE_MM
@@ -77,7 +78,8 @@ fn with_rest(track: &Track, away: &Range<usize>, limits: Range<usize>, keep_rest
     start..end
 }
 
-/// Ranges of rows that go with the row before, of which those are kept whose first row is wanted.
+/// Splits rows into ranges: `goes_on` says whether a row belongs to the range of the row before.
+/// Only ranges whose first row is `wanted` are kept.
 fn runs(rows: usize, goes_on: impl Fn(usize) -> bool, wanted: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;

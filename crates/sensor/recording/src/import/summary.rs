@@ -1,38 +1,40 @@
-//! What an import found and left out.
+//! A summary of an import.
 
-/// What an import found and left out, file by file.
+/// What an import found and left out, for each file.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ImportSummary {
-    /// One for each file, in the order of their paths.
+    /// One summary for each file, in the order of their paths.
     pub files: Vec<FileSummary>,
 }
 
 /// What the import found in one file and left out of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct FileSummary {
-    /// Name of the file, without folders.
+    /// Name of the file, without its folder.
     pub file: String,
-    /// Rows in the file, without its header line.
+    /// Number of rows in the file, without its header line.
     pub rows_read: usize,
-    /// Rows left out at its start and, for lagging taxels, at its end.
+    /// Number of rows left out at its start and, for lagging taxels, at its end.
     pub rows_dropped: usize,
-    /// Rows left out because a time, a place or a force is missing in them.
+    /// Number of rows left out because a time, a position or a force is missing.
     pub rows_incomplete: usize,
-    /// Readings that are missing, in the rows after the dropped ones; of all taxels together.
+    /// Number of missing readings in the rows after the dropped ones, of all taxels.
     pub missing_readings: usize,
-    /// Readings outside the usable range, in the rows after the dropped ones; of all taxels together.
+    /// Number of readings outside the usable range in the rows after the dropped ones, of all
+    /// taxels.
     pub clipped_readings: usize,
-    /// Static readings that leap out of their neighbours.
+    /// Number of outliers among static readings.
     pub outliers: usize,
-    /// Presses found.
+    /// Number of presses found.
     pub presses: usize,
-    /// Frames that belong to two presses, the one before and the one after: the tip rested at the same place between them.
+    /// Number of frames that belong to two presses, the one before and the one after: the tip
+    /// rested at the same location between them.
     pub shared_frames: usize,
-    /// Columns that nothing was read of.
+    /// Columns that were not read.
     pub unread_columns: Vec<String>,
-    /// Presses left out because they are incomplete; the warnings tell where and why.
+    /// Number of presses left out because they are incomplete; the warnings say where and why.
     pub presses_dropped: usize,
-    /// What a person should look at.
+    /// Warnings for people.
     pub warnings: Vec<String>,
 }
 
@@ -45,7 +47,7 @@ impl FileSummary {
         }
     }
 
-    /// Whether something was left out or is odd that a person should know. Columns that nothing was read of are neither.
+    /// Whether something was left out or is unusual. Unread columns do not count.
     #[must_use]
     pub fn is_notable(&self) -> bool {
         let plain = Self {

@@ -1,4 +1,4 @@
-//! A file as columns of numbers, with the place of each row.
+//! A file as columns of numbers, with the line of each row.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,30 +12,31 @@ use super::header;
 use super::text::Text;
 use crate::RecordingError;
 
-/// Rows that are split into cells before any is read: the cells of different columns are then read at once.
+/// Number of rows that are split into cells before any is read. The cells of different columns are
+/// then read in parallel.
 const BATCH: usize = 4096;
 
-/// The columns that were asked for, each read as what it was asked for as.
+/// The requested columns.
 pub(crate) struct Table {
     pub(crate) file: String,
     /// What a row is: a line of a text, or a message of a bag.
     pub(crate) row_name: &'static str,
     /// Number of each row's line or message, from 1; `[n_rows]`.
     pub(crate) lines: Vec<u64>,
-    /// The time of the rows where the description names none.
+    /// The time column of the rows, if the description names none.
     pub(crate) clock: Option<TimeColumn>,
     columns: BTreeMap<(String, Kind), Vec<f64>>,
-    /// Rows that were left out because a number is missing that is no reading.
+    /// Number of rows left out because a number other than a reading is missing.
     pub(crate) incomplete_rows: usize,
-    /// Rows that were left out because another topic has nothing at their time.
+    /// Number of rows left out because another topic has no message near their time.
     pub(crate) rows_alone: usize,
-    /// Columns, or topics of a bag, that nothing was read of.
+    /// Columns, or topics of a bag, that were not read.
     pub(crate) unread: Vec<String>,
-    /// What a person should know of how the file was read.
+    /// Notes for people on how the file was read.
     pub(crate) notes: Vec<String>,
 }
 
-/// A column to be read.
+/// A column to read.
 struct Wanted<'a> {
     name: &'a str,
     kind: Kind,
@@ -44,7 +45,7 @@ struct Wanted<'a> {
     labels: Labels,
 }
 
-/// The rows that were read so far.
+/// The rows read so far.
 struct Rows<'a> {
     file: &'a str,
     lines: Vec<u64>,
@@ -52,7 +53,7 @@ struct Rows<'a> {
     cells: Cells<'a>,
 }
 
-/// Rows that were split into cells. Records that were read once lend their memory to later ones.
+/// Rows that were split into cells. The memory of records is reused.
 #[derive(Default)]
 struct Batch {
     lines: Vec<u64>,
@@ -60,7 +61,8 @@ struct Batch {
 }
 
 impl Table {
-    /// Columns of numbers, without the rows in which one is missing that is no reading: these are left out if `drops_incomplete` says so, and else an error.
+    /// Columns of numbers. A row in which a number other than a reading is missing is left out if
+    /// `drops_incomplete`, else it is an error.
     pub(crate) fn new(
         file: String,
         mut lines: Vec<u64>,
@@ -108,7 +110,7 @@ impl Table {
         })
     }
 
-    /// Reads columns of a file whose text is as described.
+    /// Reads columns of a text file with the described layout.
     pub(crate) fn read(
         path: &Path,
         description: &Description,
@@ -155,7 +157,8 @@ impl Table {
             cells: Cells::new(description.decimal, &description.missing),
         };
         let mut batch = Batch::default();
-        // A line of another number of cells is an error, unless it turns out to be the last one and has no end.
+        // A line with another number of cells is an error, unless it is the last one and has no
+        // end.
         let mut cut = None;
         let wrong = loop {
             let record = batch.next();
@@ -182,7 +185,7 @@ impl Table {
                 cut = Some(line_error(&file, line, problem));
             }
         };
-        // What is wrong in a row comes before what is wrong further down.
+        // An error in an earlier row is reported before one further down.
         rows.take(&mut batch)?;
         if let Some(error) = wrong {
             return Err(error);
@@ -206,21 +209,22 @@ impl Table {
         Ok(table)
     }
 
-    /// The column of that name, which must be one of those asked for, read as that; `[n_rows]`.
+    /// The requested column with this name and kind; `[n_rows]`.
     pub(crate) fn column(&self, name: &str, kind: Kind) -> &[f64] {
         self.columns
             .get(&(name.to_owned(), kind))
             .map_or(&[], Vec::as_slice)
     }
 
-    /// Hands out a column of readings, which no other taxel has.
+    /// Takes a column of readings out of the table. Only one taxel has it.
     pub(crate) fn take_readings(&mut self, name: &str) -> Vec<f64> {
         self.columns
             .remove(&(name.to_owned(), Kind::Reading))
             .unwrap_or_default()
     }
 
-    /// Puts the columns of another table beside these rows, by the row of it that each one's partner is; rows without one are left out.
+    /// Adds the columns of another table. `partners` has the row of the other table for each row;
+    /// rows without one are left out.
     pub(crate) fn put_beside(&mut self, other: &Self, partners: &[Option<usize>]) {
         let is_kept: Vec<bool> = partners.iter().map(Option::is_some).collect();
         self.columns
@@ -241,7 +245,7 @@ impl Table {
 }
 
 impl Batch {
-    /// A record to be filled.
+    /// The next record to fill.
     fn next(&mut self) -> &mut ByteRecord {
         let place = self.lines.len();
         if place == self.records.len() {
@@ -261,7 +265,7 @@ impl Batch {
 }
 
 impl Rows<'_> {
-    /// Takes the cells of all rows of a batch.
+    /// Reads the cells of all rows of a batch.
     fn take(&mut self, batch: &mut Batch) -> Result<(), RecordingError> {
         let (file, cells) = (self.file, &self.cells);
         let columns = self.columns.par_iter_mut();
@@ -269,7 +273,7 @@ impl Rows<'_> {
             let (row, problem) = column.take(batch.records(), cells).err()?;
             Some((row, column.name, problem))
         });
-        // The first of a file is said, and in a row the first in order of columns.
+        // Reports the first error of a file; within a row, that of the first column.
         let wrong = wrong.collect::<Vec<_>>().into_iter().min_by_key(|(row, ..)| *row);
         if let Some((row, name, problem)) = wrong {
             return Err(RecordingError::Cell {
@@ -285,7 +289,7 @@ impl Rows<'_> {
 }
 
 impl Wanted<'_> {
-    /// Takes its cells of rows, or says in which one it can't, and why.
+    /// Reads its cells of these rows. An error says in which row, and why.
     fn take(&mut self, records: &[ByteRecord], cells: &Cells<'_>) -> Result<(), (usize, Problem)> {
         self.numbers.reserve(records.len());
         for (row, record) in records.iter().enumerate() {
@@ -293,7 +297,8 @@ impl Wanted<'_> {
             let number = cells.read(cell, self.kind, &mut self.labels).map_err(|problem| {
                 let is_header = cell == self.name.as_bytes();
                 let started_again = || {
-                    "is there again: the log was started again in the same file; make it two files".to_owned()
+                    "occurs again: the log was started again in the same file; split it into two files"
+                        .to_owned()
                 };
                 (row, if is_header { started_again() } else { problem })
             })?;
@@ -303,7 +308,7 @@ impl Wanted<'_> {
     }
 }
 
-/// The cells of a row of a table of so many columns: empty ones at the end that are too many do not count.
+/// Number of cells of a row. Surplus empty cells at the end do not count.
 fn n_cells(record: &ByteRecord, n_columns: usize) -> usize {
     let mut n = record.len();
     while n > n_columns && record[n - 1].trim_ascii().is_empty() {
@@ -312,7 +317,7 @@ fn n_cells(record: &ByteRecord, n_columns: usize) -> usize {
     n
 }
 
-/// Keeps the rows that are to be kept.
+/// Keeps the rows that are marked.
 pub(super) fn retain<T>(rows: &mut Vec<T>, is_kept: &[bool]) {
     let mut is_kept = is_kept.iter();
     rows.retain(|_| is_kept.next().is_some_and(|is_kept| *is_kept));

@@ -1,28 +1,29 @@
-//! A file of text as loggers leave it: in any of the usual encodings, with lines before its header, and cut off where the logger stopped.
+//! Text files as loggers write them: in any usual encoding, with lines before the header, and cut
+//! off where the logger stopped.
 
 use std::borrow::Cow;
 use std::path::Path;
 
 use crate::RecordingError;
 
-/// Bytes of a file that are looked at to tell UTF-16 without a byte-order mark.
+/// Number of bytes that are examined to recognise UTF-16 without a byte-order mark.
 const LOOKED_AT: usize = 64;
 
 /// The text of a file after the lines that are skipped.
 pub(crate) struct Text {
-    /// UTF-8.
+    /// The text in UTF-8.
     bytes: Vec<u8>,
     start: usize,
-    /// Lines before `start`.
+    /// Number of lines before `start`.
     pub(crate) skipped_lines: u64,
-    /// Whether the last line has no end: the logger may have stopped within it.
+    /// Whether the last line has no line end: the logger may have stopped in it.
     pub(crate) is_cut: bool,
-    /// What a person should know of how it was read.
+    /// Notes for people on how it was read.
     pub(crate) notes: Vec<String>,
 }
 
 impl Text {
-    /// Reads a file but for its first lines.
+    /// Reads a file without its first lines.
     pub(crate) fn read(path: &Path, skip_lines: u64) -> Result<Self, RecordingError> {
         let mut bytes = std::fs::read(path).map_err(|source| RecordingError::read(path, source))?;
         let mut notes = Vec::new();
@@ -62,7 +63,7 @@ impl Text {
     }
 }
 
-/// The same text in UTF-8, borrowed where it is that already.
+/// The text in UTF-8; borrowed if it already is UTF-8.
 fn decode<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Cow<'a, [u8]> {
     if let Some(is_little) = utf16_order(bytes) {
         notes.push("is UTF-16".to_owned());
@@ -85,14 +86,14 @@ fn decode<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Cow<'a, [u8]> {
     Cow::Owned(text.into_bytes())
 }
 
-/// Whether UTF-16 has its lower byte first; none if the text is no UTF-16.
+/// Whether UTF-16 text has its low byte first. `None` if the text is not UTF-16.
 fn utf16_order(bytes: &[u8]) -> Option<bool> {
     match bytes {
         [0xff, 0xfe, ..] => return Some(true),
         [0xfe, 0xff, ..] => return Some(false),
         _ => (),
     }
-    // Digits, separators and most names have one byte of zero.
+    // Digits, separators and most letters of names have one zero byte.
     let pairs = bytes[..bytes.len().min(LOOKED_AT)].chunks_exact(2);
     let n_pairs = pairs.len();
     let count = |place: usize| {

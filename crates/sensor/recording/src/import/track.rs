@@ -1,4 +1,4 @@
-//! The rows of one file in the project's units.
+//! The rows of one file, converted to the project's units.
 
 use glam::DQuat;
 use twintac_shape::Pose;
@@ -11,7 +11,7 @@ use super::table::Table;
 use super::unit::Unit;
 use crate::{Press, RecordingError};
 
-/// Rows of one file, the columns converted.
+/// The rows of one file with converted columns.
 pub(crate) struct Track {
     /// What a row is: a line of a text, or a message of a bag.
     pub(crate) row_name: &'static str,
@@ -20,25 +20,26 @@ pub(crate) struct Track {
     pub(crate) time_s: Vec<f64>,
     pub(crate) x_mm: Vec<f64>,
     pub(crate) y_mm: Vec<f64>,
-    /// On the z column's own scale.
+    /// On the z column's scale.
     pub(crate) z_mm: Vec<f64>,
-    /// Of the tip over the unloaded gel, negative inside.
+    /// Height of the tip above the unloaded gel; negative inside.
     pub(crate) height_mm: Vec<f64>,
-    /// How the indenter is turned; empty where it is upright throughout.
+    /// Rotation of the indenter; empty if it is always upright.
     pub(crate) rotation: Vec<DQuat>,
     pub(crate) force_n: Vec<f64>,
-    /// As the file gives them, NaN where it gives none; `[n_taxels][n_rows]`.
+    /// Readings as in the file, NaN if missing; `[n_taxels][n_rows]`.
     pub(crate) raw: Vec<Vec<f64>>,
-    /// Whether a reading is there and lies in the usable range; `[n_taxels][n_rows]`.
+    /// Whether a reading exists and is in the usable range; `[n_taxels][n_rows]`.
     pub(crate) usable: Vec<Vec<bool>>,
-    /// °C, NaN where the file gives none; `[n_taxels][n_rows]`, empty where no column has temperatures.
+    /// Temperatures, °C, NaN if missing; `[n_taxels][n_rows]`, empty if no column has temperatures.
     pub(crate) temperature_c: Vec<Vec<f64>>,
-    /// Number of the press, where a column gives it; NaN of a row that belongs to none.
+    /// Number of the press, if a column gives it; NaN for a row that belongs to none.
     pub(crate) press: Vec<f64>,
 }
 
 impl Track {
-    /// Converts the rows after the first `dropped` ones, whose times are given; times must increase from there on.
+    /// Converts the rows after the first `dropped` ones. Their times are given and must increase
+    /// from there on.
     pub(crate) fn new(
         mut table: Table,
         mut times_s: Vec<f64>,
@@ -110,12 +111,12 @@ impl Track {
         })
     }
 
-    /// Where a row is in the file: `line 12`.
+    /// Position of a row in the file: `line 12`.
     pub(crate) fn place(&self, row: usize) -> String {
         format!("{} {}", self.row_name, self.lines[row])
     }
 
-    /// Puts one row at the end of a press.
+    /// Appends a row to a press.
     pub(crate) fn push_frame(
         &self,
         row: usize,
@@ -150,7 +151,7 @@ impl Track {
         );
     }
 
-    /// The reading of one taxel before it is zeroed, kPa.
+    /// The reading of a taxel before its zero is subtracted, kPa.
     pub(crate) fn kpa(&self, row: usize, taxel: usize, description: &Description) -> f64 {
         let line = &description.taxels[taxel];
         self.raw[taxel][row] * line.scale * description.readings.kpa() + line.offset_kpa
@@ -181,7 +182,8 @@ fn check_times(
     Ok(())
 }
 
-/// Temperatures of each taxel, °C, after the first `dropped` rows; none at all where no taxel has a column of them.
+/// Temperatures of each taxel, °C, after the first `dropped` rows. Empty if no taxel has a
+/// temperature column.
 fn temperatures(table: &Table, description: &Description, dropped: usize) -> Vec<Vec<f64>> {
     let columns = (0..description.taxels.len()).map(|taxel| description.temperature_column(taxel));
     if columns.clone().all(|column| column.is_none()) {

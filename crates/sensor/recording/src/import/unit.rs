@@ -1,10 +1,10 @@
-//! Units that foreign files may use, and what they are in mm, N, s and kPa.
+//! Units of imported files, and their conversion to mm, N, s and kPa.
 
 use serde::Deserialize;
 
-/// A unit of one kind of quantity.
+/// A unit of one quantity.
 pub(crate) trait Unit: Copy + Default {
-    /// One of this unit in the project's own unit.
+    /// The factor that converts this unit to the project's unit.
     fn factor(self) -> f64;
 }
 
@@ -39,7 +39,7 @@ pub(crate) enum Time {
     Ms,
     Us,
     Ns,
-    /// A time of day, or a date and time, as text.
+    /// A time of day, or date and time, as text.
     Clock,
 }
 
@@ -88,7 +88,7 @@ pub(crate) enum Pressure {
     Bar,
     #[serde(rename = "psi")]
     Psi,
-    /// Of a converter: how much one is has to be said.
+    /// Counts of a converter; their scale has to be given.
     #[serde(rename = "counts")]
     Counts,
 }

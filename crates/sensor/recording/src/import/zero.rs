@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::description::Description;
 use super::track::Track;
 
-/// Mean reading of each taxel over the last frames before the tip comes near the gel, kPa; `[n_taxels]`.
+/// Mean reading of each taxel in the last frames before the tip is near the gel, kPa; `[n_taxels]`.
 ///
-/// A taxel without a usable reading there has no zero. `None` if there is no frame at all. Without a rule the zero is 0.
+/// A taxel without a usable reading there has no zero. `None` if there is no frame at all. Without
+/// a rule the zero is 0.
 pub(crate) fn before_press(
     track: &Track,
     span: Range<usize>,

@@ -1,4 +1,4 @@
-//! The data card: what a person needs to know who finds the data set.
+//! The data card: what a person who finds the data set needs to know.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use super::episode::LeRobotSummary;
 use super::features::Feature;
 use crate::{Provenance, Recording};
 
-/// `README.md`; `how_made` is Markdown.
+/// The text of `README.md`. `how_made` is Markdown.
 pub(super) fn card(
     recording: &Recording,
     features: &[Feature],
@@ -17,7 +17,7 @@ pub(super) fn card(
     how_made: &str,
 ) -> String {
     let (sensor, provenance) = (markdown(&recording.sensor), recording.provenance);
-    // As a literal of Python, which takes JSON's.
+    // A Python string literal; JSON's form is valid in Python.
     let repository = Value::from(format!("twintac/{}", recording.sensor)).to_string();
     let repository = visible(&repository);
     let meaning = match provenance {
@@ -59,11 +59,11 @@ pub(super) fn card(
         let _ = writeln!(
             card,
             "\nFrames were resampled: they came at {from_hz:.2} Hz by the median of the times between them, and are interpolated linearly at {fps} Hz. A reading \
-             is usable where both that it lies between are, and no frame is missing there; poses and forces are interpolated there, too."
+             is usable where the two readings around it are usable and no frame between them is missing; poses and forces are interpolated across missing frames, too."
         );
     }
     if !features.iter().any(|feature| feature.name == "observation.force") {
-        card.push_str("\nThere is no force: not all presses have one.\n");
+        card.push_str("\nThere is no force, because not all presses have one.\n");
     }
     for (taxel, name) in recording.taxels.iter().enumerate() {
         let rows = recording.presses.iter().flat_map(|press| &press.valid);
@@ -71,8 +71,8 @@ pub(super) fn card(
         if n_unusable > 0 {
             let _ = writeln!(
                 card,
-                "\nTaxel {} has no reading that can be used in {n_unusable} of {frames} frames: `tactile_valid` is false there, `observation.tactile` NaN where none came, and \
-                 statistics are without them.",
+                "\nTaxel {} has no reading that can be used in {n_unusable} of {frames} frames: `tactile_valid` is false there, `observation.tactile` is NaN where a reading is missing, and \
+                 statistics leave these readings out.",
                 markdown(name)
             );
         }

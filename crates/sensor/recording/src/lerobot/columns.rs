@@ -1,4 +1,4 @@
-//! Tables with columns of values and of lists, as pyarrow lays them out.
+//! Tables with columns of values and lists, in pyarrow's layout.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -28,7 +28,7 @@ pub(super) enum LeRobotValues {
 pub(super) struct LeRobotColumn {
     name: String,
     values: LeRobotValues,
-    /// How many values each row has, where rows are lists.
+    /// Number of values in each row, if rows are lists.
     lengths: Option<Vec<usize>>,
 }
 
@@ -53,7 +53,7 @@ impl LeRobotValues {
         }
     }
 
-    /// Adds values of the same type.
+    /// Appends values of the same type.
     fn extend(&mut self, more: Self) {
         match (self, more) {
             (Self::Single(values), Self::Single(more)) => values.extend(more),
@@ -67,7 +67,7 @@ impl LeRobotValues {
 }
 
 impl LeRobotColumn {
-    /// A value for each row.
+    /// A column with one value in each row.
     pub(super) fn single(name: &str, values: LeRobotValues) -> Self {
         Self {
             name: name.to_owned(),
@@ -76,7 +76,7 @@ impl LeRobotColumn {
         }
     }
 
-    /// A list for each row, all of one type.
+    /// A column with a list in each row; all lists have one type.
     pub(super) fn lists(name: &str, rows: impl Iterator<Item = LeRobotValues>) -> Self {
         let mut lengths = Vec::new();
         let mut all: Option<LeRobotValues> = None;
@@ -116,7 +116,8 @@ impl LeRobotColumn {
             .map(Arc::new)
     }
 
-    /// Writes it as the next column: every value is there, and only the first of a list begins a row.
+    /// Writes the column as the next one. All values exist, and only the first value of a list
+    /// begins a row.
     fn put(&self, group: &mut SerializedRowGroupWriter<'_, BufWriter<File>>) -> Result<(), ParquetError> {
         match &self.values {
             LeRobotValues::Single(values) => self.put_values::<FloatType>(group, values),
@@ -153,7 +154,7 @@ impl LeRobotColumn {
     }
 }
 
-/// Writes a table, with one more entry of its metadata if there is one.
+/// Writes a table, with an additional entry in its metadata if one is given.
 pub(super) fn write_table(
     path: &Path,
     columns: &[LeRobotColumn],

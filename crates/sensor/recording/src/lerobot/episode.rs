@@ -1,19 +1,20 @@
-//! Presses as LeRobot counts them.
+//! Presses as episodes of LeRobot.
 
 use crate::Press;
 
-/// What was written.
+/// Summary of a written data set.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LeRobotSummary {
-    /// Presses.
+    /// Number of presses.
     pub episodes: usize,
-    /// Frames of all presses.
+    /// Number of frames of all presses.
     pub frames: usize,
-    /// Indenters.
+    /// Number of indenters.
     pub tasks: usize,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: u64,
-    /// The rate that frames were resampled from, Hz; `None` if they came evenly at a whole rate.
+    /// The rate that frames were resampled from, Hz. `None` if they were evenly spaced at a whole
+    /// rate.
     pub resampled_from_hz: Option<f64>,
 }
 
@@ -21,8 +22,8 @@ pub struct LeRobotSummary {
 pub(super) struct Episode<'a> {
     pub(super) press: &'a Press,
     pub(super) task: usize,
-    /// Number of its first frame.
+    /// Index of its first frame.
     pub(super) first: usize,
-    /// Number of its file of frames.
+    /// Index of its file of frames.
     pub(super) file: usize,
 }

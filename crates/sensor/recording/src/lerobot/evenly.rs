@@ -1,4 +1,5 @@
-//! Frames at a whole rate: a data set of LeRobot has one whole number of frames a second, and frame `i` of an episode is at `i` over it.
+//! Frames at a whole rate. A LeRobot data set has a whole number of frames per second, and frame
+//! `i` of an episode is at the time `i` divided by this rate.
 
 use std::borrow::Cow;
 
@@ -6,22 +7,23 @@ use twintac_shape::Pose;
 
 use crate::{Press, Recording};
 
-/// Frames that are no farther from evenly spaced count as evenly spaced, s; LeRobot refuses more.
+/// Largest deviation from even spacing, s; LeRobot accepts no more.
 const EVEN_S: f64 = 1e-4;
 
-/// Neighbours that are farther apart than so many frames have something missing between them.
+/// Between neighbours that are farther apart than this many frames, frames are missing.
 const GAP: f64 = 2.5;
 
 /// A recording with evenly spaced frames.
 pub(super) struct Even<'a> {
     pub(super) recording: Cow<'a, Recording>,
-    /// Frames a second.
+    /// Frames per second.
     pub(super) fps: u64,
-    /// The rate that it was resampled from, Hz: that of the median time between frames. `None` if its frames were evenly spaced already.
+    /// The rate that it was resampled from, Hz: from the median time between frames. `None` if its
+    /// frames were evenly spaced already.
     pub(super) from_hz: Option<f64>,
 }
 
-/// The recording at the whole rate that is nearest to its own, at least one frame a second.
+/// The recording at the whole rate nearest to its own, at least one frame per second.
 pub(super) fn evenly(recording: &Recording) -> Even<'_> {
     let times_s = || recording.presses.iter().map(|press| &press.time_s);
     let mut steps_s: Vec<f64> = times_s()
@@ -55,8 +57,8 @@ pub(super) fn evenly(recording: &Recording) -> Even<'_> {
     }
 }
 
-/// A press at so many frames a second: interpolated linearly, rotations along the shortest arc. A reading is valid where both frames beside it are, and
-/// none is missing between these.
+/// A press at `fps` frames per second: interpolated linearly, rotations along the shortest arc. A
+/// reading is valid if both frames beside it are, and if no frame is missing between these.
 fn resampled(press: &Press, fps: f64) -> Press {
     let time_s = &press.time_s;
     let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
@@ -97,7 +99,7 @@ fn resampled(press: &Press, fps: f64) -> Press {
 struct Between {
     before: usize,
     after: usize,
-    /// Part of the way from one to the other.
+    /// The fraction of the way from one to the other.
     part: f64,
     has_gap: bool,
 }
@@ -112,7 +114,7 @@ impl Between {
         } else {
             after
         };
-        // A frame that is as good as there stands for itself, whatever is beside it.
+        // A frame at almost the same time is taken as it is, whatever its neighbours are.
         let is_there = |frame: &usize| (time_s[*frame] - at_s).abs() <= EVEN_S;
         let (before, after) = match [before, after].into_iter().find(is_there) {
             Some(frame) => (frame, frame),
@@ -132,7 +134,7 @@ impl Between {
     }
 
     fn mix(&self, before: f64, after: f64) -> f64 {
-        // Equal numbers stay what they are, to the bit.
+        // Equal numbers stay the same, bit for bit.
         before + self.part * (after - before)
     }
 

@@ -1,4 +1,4 @@
-//! What each frame of an episode has.
+//! The features of a frame of an episode.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use crate::{Press, Recording};
 /// Names of a pose's numbers.
 const POSE: [&str; 7] = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];
 
-/// How a feature's numbers are written.
+/// The type in which a feature's numbers are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Single,
@@ -17,21 +17,21 @@ enum Kind {
     Flag,
 }
 
-/// The numbers of a feature in a frame of an episode, which has a number itself.
+/// The numbers of a feature, from an episode, its index, and the index of a frame.
 type Numbers = Box<dyn Fn(&Episode, usize, usize) -> Vec<f64>>;
 
 /// One feature of every frame.
 pub(super) struct Feature {
     pub(super) name: String,
     kind: Kind,
-    /// What its numbers are called; none has a single number without a name.
+    /// Names of its numbers; empty for a single number without a name.
     names: Vec<String>,
     value: Numbers,
-    /// Which of its numbers can be used; `None` for all.
+    /// Which of its numbers are usable. `None`: all are.
     usable: Option<fn(&Press, usize) -> &[bool]>,
 }
 
-/// The features of a recording, in the order of the columns.
+/// The features of a recording, in the order of columns.
 pub(super) fn features(recording: &Recording) -> Vec<Feature> {
     let mut features = vec![
         Feature {
@@ -125,7 +125,7 @@ fn pose(press: &Press, frame: usize) -> Vec<f64> {
 }
 
 impl Feature {
-    /// Its numbers in every frame of an episode, which has a number itself.
+    /// Its numbers in every frame of an episode with this index.
     pub(super) fn rows<'a>(
         &'a self,
         episode: &'a Episode,
@@ -134,7 +134,7 @@ impl Feature {
         (0..episode.press.time_s.len()).map(move |frame| (self.value)(episode, index, frame))
     }
 
-    /// The same, with NaN for each number that cannot be used: what statistics are of.
+    /// Its numbers with NaN for unusable ones, for statistics.
     pub(super) fn usable_rows<'a>(
         &'a self,
         episode: &'a Episode,
@@ -152,12 +152,12 @@ impl Feature {
         })
     }
 
-    /// How many numbers it has in a frame.
+    /// Number of numbers in a frame.
     fn width(&self) -> usize {
         self.names.len().max(1)
     }
 
-    /// How many bytes it has in a frame.
+    /// Size in a frame, bytes.
     pub(super) fn bytes(&self) -> u64 {
         let of_one = match self.kind {
             Kind::Single => 4,
@@ -167,13 +167,13 @@ impl Feature {
         of_one * self.width() as u64
     }
 
-    /// What `info.json` says of it.
+    /// Its entry in `info.json`.
     pub(super) fn info(&self) -> Value {
         let names = (!self.names.is_empty()).then_some(&self.names);
         json!({"dtype": self.dtype(), "shape": [self.width()], "names": names})
     }
 
-    /// The type of its numbers, as NumPy calls it.
+    /// NumPy's name of the type of its numbers.
     pub(super) fn dtype(&self) -> &'static str {
         match self.kind {
             Kind::Single => "float32",
@@ -187,7 +187,7 @@ impl Feature {
         self.names.join(", ")
     }
 
-    /// Its column: lists where it has more than one number.
+    /// Its column: lists if it has more than one number.
     pub(super) fn column(&self, rows: impl Iterator<Item = Vec<f64>>) -> LeRobotColumn {
         let typed = |numbers: Vec<f64>| match self.kind {
             Kind::Single => LeRobotValues::Single(numbers.into_iter().map(|number| number as f32).collect()),

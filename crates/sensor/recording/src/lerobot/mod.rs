@@ -1,11 +1,13 @@
-//! Recordings as data sets of LeRobot, version 3.0: presses are episodes, indenters are tasks.
+//! Recordings as LeRobot data sets, version 3.0: presses are episodes, indenters are tasks.
 //!
 //! ```text
 //! README.md                                     the data card
 //! meta/info.json                                features, counts, frames a second
-//! meta/stats.json                               minimum, maximum, mean, deviation and quantiles of each feature
+//! meta/stats.json                               minimum, maximum, mean, deviation and quantiles of
+//!                                               each feature
 //! meta/tasks.parquet                            what each press is for, with its number
-//! meta/episodes/chunk-000/file-000.parquet      a row for each press: its length, where its frames are, its own statistics
+//! meta/episodes/chunk-000/file-000.parquet      a row for each press: its length, where its frames
+//!                                               are, its own statistics
 //! data/chunk-000/file-000.parquet               a row for each frame
 //! ```
 
@@ -33,33 +35,38 @@ use statistics::{Statistics, statistics};
 /// The version of the format.
 const VERSION: &str = "v3.0";
 
-/// LeRobot begins another file when one has come to so many bytes.
+/// When a file reaches this size, LeRobot begins another.
 const FILE_MB: u64 = 100;
 
-/// Files of a folder.
+/// Number of files in a folder.
 const FILES_OF_CHUNK: usize = 1000;
 
-/// Where frames are.
+/// Folder of frames.
 const DATA: &str = "data";
 
-/// Where episodes are.
+/// Folder of episodes.
 const EPISODES: &str = "meta/episodes";
 
 impl Recording {
-    /// Writes the recording as a LeRobot data set, version 3.0, into a folder that is not there yet: it appears whole or not at all. `how_made` is put into its
-    /// card: how the presses came about, as text.
+    /// Writes the recording as a LeRobot data set, version 3.0, into a folder that does not exist
+    /// yet. The folder appears complete or not at all. `how_made` is a text for its card: how the
+    /// presses were made.
     ///
-    /// Features, as single-precision numbers: `observation.state`, the pose of the indenter (mm, quaternion); `observation.tactile`, a reading for each taxel (kPa);
-    /// `observation.force` (N) where all presses have one; `action`, the pose of the next frame; `tactile_valid`, whether each reading can be used. `timestamp` counts
-    /// from the start of each press, s. Tasks name the indenter.
+    /// Features, as single-precision numbers: `observation.state`, the pose of the indenter (mm,
+    /// quaternion); `observation.tactile`, a reading for each taxel (kPa); `observation.force` (N),
+    /// if all presses have one; `action`, the pose of the next frame; `tactile_valid`, whether each
+    /// reading is usable. `timestamp` counts from the start of each press, s. Tasks name the
+    /// indenter.
     ///
-    /// Frames come at a whole rate, that nearest to the recording's own: where they do not already, they are interpolated, which the summary and the card say. A
-    /// reading is usable where those beside it are.
+    /// Frames have a whole rate, the nearest to the recording's own. If necessary they are
+    /// interpolated; summary and card say so. A reading is usable if those beside it are.
     ///
-    /// A reading that is missing is NaN. Statistics are of the readings that can be used, and null where there are none.
+    /// A missing reading is NaN. Statistics use only usable readings, and are null if there are
+    /// none.
     ///
     /// # Errors
-    /// The recording is inconsistent or has no presses; the folder is there already, or cannot be written.
+    /// The recording is inconsistent or has no presses; the folder exists already, or cannot be
+    /// written.
     pub fn write_lerobot(&self, folder: &Path, how_made: &str) -> Result<LeRobotSummary, RecordingError> {
         self.check()?;
         if self.presses.is_empty() {
@@ -82,7 +89,7 @@ impl Recording {
         let mut name = folder.file_name().unwrap_or_default().to_owned();
         name.push(".partial");
         let partial = above.join(name);
-        let _ = fs::remove_dir_all(&partial); // of a killed one
+        let _ = fs::remove_dir_all(&partial); // left by a killed run
         let written = write_data_set(&evenly(self), &partial, how_made);
         match written {
             Ok(summary) => fs::rename(&partial, folder).map(|()| summary).map_err(problem),
@@ -159,12 +166,12 @@ fn write_data_set(even: &Even<'_>, folder: &Path, how_made: &str) -> Result<LeRo
     Ok(summary)
 }
 
-/// What a press with an indenter is for.
+/// The text of the task for an indenter.
 fn task_text(indenter: &str) -> String {
     format!("press the sensor with the indenter {indenter}")
 }
 
-/// A file of a folder of chunks.
+/// The path of a file in a folder of chunks.
 fn numbered(folder: &Path, kind: &str, file: usize) -> PathBuf {
     let (chunk, file) = (file / FILES_OF_CHUNK, file % FILES_OF_CHUNK);
     folder
@@ -230,7 +237,7 @@ fn write_episodes(
     write_table(&numbered(folder, EPISODES, 0), &columns, None)
 }
 
-/// The tasks are the index of a table of pandas, which its metadata say.
+/// The tasks are the index of a pandas table; the table's metadata says so.
 fn write_tasks(folder: &Path, tasks: &[String]) -> Result<(), RecordingError> {
     const INDEX: &str = "__index_level_0__";
     let numbers = (0..tasks.len()).map(|task| task as i64);
@@ -284,7 +291,7 @@ fn write_json(path: &Path, value: &Value) -> Result<(), RecordingError> {
     write(path, format!("{value:#}\n").as_bytes())
 }
 
-/// Writes a file into a folder that may not be there yet.
+/// Writes a file, and creates its folder if necessary.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), RecordingError> {
     let problem = |source| RecordingError::write(path, source);
     fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(problem)?;

@@ -1,10 +1,10 @@
-//! Statistics of a feature, as LeRobot normalizes with them.
+//! Statistics of a feature, as LeRobot uses them for normalisation.
 
 use serde_json::{Map, Value};
 
 use super::columns::{LeRobotColumn, LeRobotValues};
 
-/// Names of the quantiles, and which they are.
+/// Names of the quantiles, and their probabilities.
 const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
     ("q10", 0.1),
@@ -13,16 +13,17 @@ const QUANTILES: [(&str, f64); 5] = [
     ("q99", 0.99),
 ];
 
-/// Statistics over frames, of each of a feature's numbers.
+/// Statistics over frames for each number of a feature.
 pub(super) struct Statistics {
-    /// `min`, `max`, `mean`, `std` and the quantiles, by name; NaN of nothing.
+    /// `min`, `max`, `mean`, `std` and the quantiles, by name. NaN if there are no values.
     by_name: Vec<(&'static str, Vec<f64>)>,
-    /// Frames.
+    /// Number of frames.
     count: i64,
 }
 
-/// The statistics of rows of numbers, those that are NaN left out. Quantiles are between neighbours in proportion; the deviation is that of the rows
-/// themselves.
+/// Statistics of rows of numbers without those that are NaN. Quantiles are interpolated linearly
+/// between neighbours. The standard deviation is that of the rows themselves (divided by their
+/// number).
 pub(super) fn statistics(rows: &[Vec<f64>]) -> Statistics {
     let width = rows.first().map_or(0, Vec::len);
     let mut by_name: Vec<(&'static str, Vec<f64>)> = ["min", "max", "mean", "std"]
@@ -60,7 +61,7 @@ fn quantile(sorted: &[f64], part: f64) -> f64 {
 }
 
 impl Statistics {
-    /// As `stats.json` has them; a statistic of nothing is null.
+    /// As in `stats.json`; null if there are no values.
     pub(super) fn json(&self) -> Value {
         let mut json: Map<String, Value> = self
             .by_name
@@ -71,7 +72,7 @@ impl Statistics {
         Value::Object(json)
     }
 
-    /// The columns of a feature in the table of episodes, which have these statistics.
+    /// The columns of a feature's statistics in the table of episodes.
     pub(super) fn columns(feature: &str, episodes: &[Self]) -> Vec<LeRobotColumn> {
         let names = episodes.first().map_or(&[][..], |first| &first.by_name);
         let mut columns: Vec<LeRobotColumn> = names
@@ -103,7 +104,7 @@ mod tests {
             .map(|value| vec![*value, -value])
             .collect();
         let json = statistics(&rows).json();
-        // numpy: mean 2.8, std 1.6, quantile([3, 1, 4, 1, 5], [0.1, 0.5, 0.9]) = 1.0, 3.0, 4.6
+        // NumPy: mean 2.8, std 1.6, quantile([3, 1, 4, 1, 5], [0.1, 0.5, 0.9]) = 1.0, 3.0, 4.6
         let close = |name: &str, expected: f64| {
             let found = json[name][0].as_f64().unwrap();
             assert!((found - expected).abs() < 1e-12, "{name}: {found}");

@@ -1,4 +1,4 @@
-//! One column of a Parquet file, read whole.
+//! Reads the columns of a Parquet file.
 
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -8,13 +8,14 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use bytes::Bytes;
 
-/// Rows read at once. Never as many as the file claims to have: the claim may be wrong.
+/// Number of rows that are read at once. It does not depend on the number of rows that the file
+/// states, because that may be wrong.
 const BATCH: usize = 4096;
 
-/// A Parquet file whose columns are looked up by name; what is wrong comes back as a text.
+/// A Parquet file with access to columns by name. Errors are texts.
 pub(super) struct Columns {
     reader: SerializedFileReader<Bytes>,
-    /// Names, in the order of the file.
+    /// Names of the columns, in the order of the file.
     pub(super) names: Vec<String>,
 }
 
@@ -35,7 +36,7 @@ impl Columns {
         self.reader.num_row_groups()
     }
 
-    /// Value of a key in the file's metadata.
+    /// The value of a key in the file's metadata.
     pub(super) fn metadata(&self, key: &str) -> Result<String, String> {
         let pairs = self.reader.metadata().file_metadata().key_value_metadata();
         let value = pairs

@@ -1,4 +1,4 @@
-//! Frames of a sensor that nobody presses by plan, as a table: one row per frame.
+//! Frames of a sensor without planned presses, as a table with one row per frame.
 
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -16,26 +16,28 @@ use super::schema;
 use super::write::put_column;
 use crate::{Provenance, RecordingError};
 
-/// Frames of a row group: ten minutes of a sensor.
+/// Number of frames in a row group: ten minutes of a sensor.
 const ROWS: usize = 65_536;
 
-/// What one taxel gave in a frame.
+/// The data of one taxel in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TaxelCell {
-    /// Absolute pressure, kPa, if it can be used.
+    /// Absolute pressure, kPa. `None` if it cannot be used.
     pub absolute_kpa: Option<f64>,
-    /// What it counted, if it gave anything.
+    /// Raw counts, if the taxel gave any.
     pub counts: Option<i32>,
-    /// Temperature, °C, if it gave one.
+    /// Temperature, °C, if the taxel gave one.
     pub temperature_c: Option<f64>,
-    /// Why its pressure cannot be used, if it can't.
+    /// Why the pressure cannot be used, if so.
     pub fault: Option<&'static str>,
 }
 
-/// Writes frames as a Parquet file, through a temporary name, in little memory however many they are. The same frames give the same bytes.
+/// Writes frames as a Parquet file, through a temporary name, with little memory for any number of
+/// frames. The same frames give the same bytes.
 ///
-/// Columns: `time_s`, `provenance` and `gap_before`; then of all taxels `<taxel>_absolute_kpa`, `<taxel>_counts`, `<taxel>_temperature_c` and
-/// `<taxel>_fault`, null where there is none. The metadata has `twintac.sensor` and `twintac.provenance`.
+/// Columns: `time_s`, `provenance` and `gap_before`; then for all taxels `<taxel>_absolute_kpa`,
+/// `<taxel>_counts`, `<taxel>_temperature_c` and `<taxel>_fault`, null if missing. The metadata has
+/// `twintac.sensor` and `twintac.provenance`.
 #[derive(Debug)]
 pub struct FrameTable {
     writer: SerializedFileWriter<BufWriter<PartialFile>>,
@@ -43,13 +45,13 @@ pub struct FrameTable {
     provenance: Provenance,
     time_s: Vec<f64>,
     gap_before: Vec<bool>,
-    /// By taxel.
+    /// Cells of the waiting frames, for each taxel.
     cells: Vec<Vec<TaxelCell>>,
     rows: u64,
 }
 
 impl FrameTable {
-    /// Begins a table, which takes the file's place when it is finished.
+    /// Begins a table. The file gets its name when the table is finished.
     ///
     /// # Errors
     /// [`RecordingError::Write`].
@@ -84,8 +86,8 @@ impl FrameTable {
     /// Adds a frame: a cell for each taxel, and whether frames before it are known to be missing.
     ///
     /// # Errors
-    /// [`RecordingError::Write`]. [`RecordingError::Inconsistent`]: another number of cells, or a number that is not finite; one that is missing is
-    /// `None`. Nothing is added then.
+    /// [`RecordingError::Write`]. [`RecordingError::Inconsistent`]: the number of cells is wrong,
+    /// or a number is not finite; a missing number is `None`. Nothing is added then.
     pub fn push(
         &mut self,
         time_s: f64,
@@ -124,7 +126,7 @@ impl FrameTable {
         Ok(())
     }
 
-    /// Writes what waits, and gives the file its name. How many rows it has.
+    /// Writes the waiting frames, and gives the file its name. Returns the number of rows.
     ///
     /// # Errors
     /// [`RecordingError::Write`].
@@ -173,7 +175,7 @@ impl FrameTable {
     }
 }
 
-/// The values that are there, and for each row whether it has one.
+/// The values that exist, and for each row whether it has one.
 fn split<T: DataType>(
     cells: &[TaxelCell],
     value: impl Fn(&TaxelCell) -> Option<T::T>,

@@ -1,4 +1,5 @@
-//! Recordings in Parquet files: one row per frame, which pandas and the like open as they are.
+//! Recordings in Parquet files: one row per frame. pandas and similar programs can open them
+//! directly.
 
 mod column;
 mod file;

@@ -12,14 +12,15 @@ use crate::missing::known_or_nan;
 use crate::{Control, Press, Provenance, Recording, RecordingError};
 
 impl Recording {
-    /// Reads a Parquet file with the columns that [`write_parquet`](Self::write_parquet) gives; `press_index` and temperatures may be missing,
-    /// further columns are left alone, and `mounting` may have its old name `file`. Rows with the same `press` belong together and must
-    /// follow each other.
+    /// Reads a Parquet file with the columns of [`write_parquet`](Self::write_parquet).
+    /// `press_index` and temperatures may be missing, other columns are ignored, and `mounting` may
+    /// have its old name `file`. Rows with the same `press` belong together and must be
+    /// consecutive.
     ///
     /// # Errors
     ///
-    /// The file cannot be read, is truncated or altered (files that this crate wrote carry a checksum of all bytes), lacks a
-    /// column, is inconsistent ([`check`](Self::check)), or holds no presses.
+    /// The file cannot be read, is truncated or altered (files of this crate have a checksum of all
+    /// bytes), lacks a column, is inconsistent ([`check`](Self::check)), or has no presses.
     pub fn read_parquet(path: &Path) -> Result<Self, RecordingError> {
         let recording = decoded(path, decode)?;
         expect_presses(path, &recording)?;
@@ -27,7 +28,7 @@ impl Recording {
     }
 }
 
-/// Refuses a file whose presses are inconsistent, and one without any.
+/// Refuses a file whose presses are inconsistent, or that has none.
 pub(super) fn expect_presses(path: &Path, recording: &Recording) -> Result<(), RecordingError> {
     recording
         .check()
@@ -77,7 +78,7 @@ pub(super) fn decode(columns: &Columns) -> Result<Recording, String> {
     })
 }
 
-/// All rows of a file, column by column.
+/// All rows of a file, by column.
 struct Rows {
     taxels: Vec<String>,
     press: Vec<String>,
@@ -91,7 +92,7 @@ struct Rows {
     kpa: Vec<Vec<f64>>,
     raw: Vec<Vec<f64>>,
     valid: Vec<Vec<bool>>,
-    /// Empty in a file without temperatures.
+    /// Empty for a file without temperatures.
     temperature_c: Vec<Vec<f64>>,
 }
 
@@ -164,7 +165,7 @@ impl Rows {
         }
     }
 
-    /// One press from its rows, of which there is at least one.
+    /// A press from its rows, of which there is at least one.
     fn press(&self, rows: std::ops::Range<usize>) -> Result<Press, String> {
         let first = rows.start;
         let name = &self.press[first];
@@ -217,7 +218,7 @@ impl Rows {
     }
 }
 
-/// The column that says how the gel and the indenter were mounted.
+/// The name of the column with the installation of gel and indenter.
 fn mounting_column(columns: &Columns) -> &'static str {
     let has = |name: &str| columns.names.iter().any(|other| other == name);
     match !has(schema::MOUNTING) && has(schema::OLD_MOUNTING) {

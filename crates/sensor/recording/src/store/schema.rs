@@ -1,4 +1,4 @@
-//! Names and types of the columns.
+//! Names and types of columns.
 
 use std::sync::Arc;
 
@@ -6,19 +6,19 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::errors::ParquetError;
 use parquet::schema::types::{Type, TypePtr};
 
-/// Version of the layout described here; readers refuse others.
+/// Version of this layout. Readers refuse other versions.
 pub(super) const VERSION: &str = "1";
 /// Keys of the file's metadata.
 pub(super) const VERSION_KEY: &str = "twintac.schema";
 pub(super) const SENSOR_KEY: &str = "twintac.sensor";
 pub(super) const PROVENANCE_KEY: &str = "twintac.provenance";
 
-/// Number of the press, from 0.
+/// Index of the press, from 0.
 pub(super) const PRESS_INDEX: &str = "press_index";
-/// Text columns, the same in all rows of a press.
+/// Text columns with the same value in all rows of a press.
 pub(super) const PRESS: &str = "press";
 pub(super) const MOUNTING: &str = "mounting";
-/// What the column `mounting` was called in older files.
+/// The name of the column `mounting` in older files.
 pub(super) const OLD_MOUNTING: &str = "file";
 pub(super) const INDENTER: &str = "indenter";
 pub(super) const CONTROL: &str = "control";
@@ -27,15 +27,15 @@ pub(super) const TEXTS: [&str; 5] = [PRESS, MOUNTING, INDENTER, CONTROL, PROVENA
 /// Time and pose.
 pub(super) const TIME: &str = "time_s";
 pub(super) const POSE: [&str; 7] = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];
-/// Null where the force is not known.
+/// Null if the force is not known.
 pub(super) const FORCE: &str = "force_n";
-/// Behind a taxel's name.
+/// Suffixes of a taxel's name.
 pub(super) const KPA: &str = "_kpa";
 pub(super) const RAW: &str = "_raw";
 pub(super) const VALID: &str = "_valid";
-/// Of a table of frames: whether frames are known to be missing before this one.
+/// For tables of frames: whether frames are known to be missing before this one.
 pub(super) const GAP_BEFORE: &str = "gap_before";
-/// The same, behind a taxel's name; null where there is none.
+/// For tables of frames: suffixes of a taxel's name; null if missing.
 pub(super) const ABSOLUTE_KPA: &str = "_absolute_kpa";
 pub(super) const COUNTS: &str = "_counts";
 pub(super) const TEMPERATURE_C: &str = "_temperature_c";

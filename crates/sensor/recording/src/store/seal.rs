@@ -1,8 +1,10 @@
-//! A checksum that finds damage anywhere in a Parquet file, without making it less of a Parquet file.
+//! A checksum that detects damage anywhere in a Parquet file. The file remains a valid Parquet
+//! file.
 //!
-//! A Parquet file is `PAR1 | pages | footer | footer length | PAR1`. Readers find the footer from the end and the pages through
-//! the footer, so that bytes between pages and footer are never looked at: there stand a mark and the SHA-256 of all the
-//! other bytes. Files of other programs have no seal and are read without it.
+//! A Parquet file is `PAR1 | pages | footer | footer length | PAR1`. Readers find the footer from
+//! the end and the pages through the footer, so bytes between pages and footer are never read.
+//! There the seal is placed: a mark and the SHA-256 of all other bytes. Files of other programs
+//! have no seal and are read without this check.
 
 use std::io::{self, Write};
 
@@ -12,12 +14,12 @@ const MAGIC: &[u8] = b"PAR1";
 const MARK: &[u8] = b"twintac1";
 const SEAL_BYTES: usize = MARK.len() + 32;
 
-/// Passes a Parquet file on as it is written, and puts the seal before its footer.
+/// Passes a Parquet file on while it is written, and inserts the seal before its footer.
 #[derive(Debug)]
 pub(super) struct Sealing<W> {
     inner: W,
     digest: Sha256,
-    /// What is held back from [`Self::hold`] on.
+    /// The bytes held back after [`Self::hold`].
     end: Option<Vec<u8>>,
 }
 
@@ -30,12 +32,12 @@ impl<W: Write> Sealing<W> {
         }
     }
 
-    /// What is written from now on is the file's end: all pages are written.
+    /// Marks that all pages are written: bytes from now on are the end of the file.
     pub(super) fn hold(&mut self) {
         self.end = Some(Vec::new());
     }
 
-    /// Puts the seal into the end, and passes both on.
+    /// Inserts the seal into the end, and writes both.
     pub(super) fn finish(mut self) -> io::Result<W> {
         let end = self.end.unwrap_or_default();
         let footer = footer_start(&end).map_err(io::Error::other)?;
@@ -64,7 +66,7 @@ impl<W: Write> Write for Sealing<W> {
     }
 }
 
-/// Checks that this is a whole Parquet file and, if it has a seal, that no byte of it has changed.
+/// Checks that this is a complete Parquet file and, if it has a seal, that no byte has changed.
 pub(super) fn verify(file: &[u8]) -> Result<(), String> {
     if !file.starts_with(MAGIC) {
         return Err("it does not start as a Parquet file".to_owned());
@@ -95,7 +97,7 @@ fn digest(before: &[u8], after: &[u8]) -> [u8; 32] {
         .into()
 }
 
-/// Where the footer starts in the end of a whole Parquet file.
+/// Where the footer begins in the end of a complete Parquet file.
 fn footer_start(end: &[u8]) -> Result<usize, String> {
     let Some((rest, tail)) = end
         .split_last_chunk::<8>()

@@ -1,4 +1,4 @@
-//! What a Parquet file holds: presses, or frames without poses.
+//! The content of a Parquet file: presses, or frames without poses.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use super::{read, schema};
 use crate::missing::known_or_nan;
 use crate::{Frames, Recording, RecordingError};
 
-/// What a Parquet file holds.
+/// The content of a Parquet file.
 #[derive(Clone, Debug)]
 pub enum Stored {
-    /// Presses, as [`Recording::write_parquet`] writes them.
+    /// Presses, from [`Recording::write_parquet`].
     Presses(Recording),
-    /// Frames without poses, as [`FrameTable`](crate::FrameTable) writes them.
+    /// Frames without poses, from [`FrameTable`](crate::FrameTable).
     Frames(Frames),
 }
 
@@ -21,7 +21,7 @@ impl Stored {
     /// Reads a file of either kind.
     ///
     /// # Errors
-    /// As [`Recording::read_parquet`].
+    /// See [`Recording::read_parquet`].
     pub fn read_parquet(path: &Path) -> Result<Self, RecordingError> {
         let stored = decoded(path, |columns| {
             if holds_frames(columns) {

@@ -11,19 +11,19 @@ use crate::{Press, Recording};
 /// A column of a recording's table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
-    /// A count from 0 for each frame.
+    /// An index from 0 for each frame.
     Index(Vec<i32>),
-    /// A text for each press, the same in all its frames.
+    /// A text for each press, repeated in all its frames.
     Text(Vec<String>),
     /// A number for each frame.
     Number(Vec<f64>),
-    /// The same, where it is known.
+    /// A number for each frame, if known.
     Known(Vec<Option<f64>>),
-    /// Yes or no for each frame.
+    /// True or false for each frame.
     Flag(Vec<bool>),
 }
 
-/// The types of columns, in their order.
+/// The types of columns, in order.
 pub(super) fn types(columns: &[(String, Column)]) -> Result<TypePtr, ParquetError> {
     let typed = columns.iter().map(|(name, column)| match column {
         Column::Index(_) => schema::required(name, Physical::INT32),
@@ -36,8 +36,8 @@ pub(super) fn types(columns: &[(String, Column)]) -> Result<TypePtr, ParquetErro
 }
 
 impl Recording {
-    /// The recording as a table with one row per frame: names of columns and what they have, as [`write_parquet`](Self::write_parquet) writes
-    /// them.
+    /// The recording as a table with one row per frame: names and values of the columns that
+    /// [`write_parquet`](Self::write_parquet) writes.
     #[must_use]
     pub fn columns(&self) -> Vec<(String, Column)> {
         self.columns_with(self.has_temperatures())
@@ -49,7 +49,7 @@ impl Recording {
         self.presses.iter().any(|press| press.temperature_c.is_some())
     }
 
-    /// The same, with columns of temperatures or without.
+    /// The table, with or without columns of temperatures.
     pub(super) fn columns_with(&self, has_temperatures: bool) -> Vec<(String, Column)> {
         let frames = |press: &Press| press.time_s.len();
         let index = (0..).zip(&self.presses);

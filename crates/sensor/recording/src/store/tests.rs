@@ -1,4 +1,4 @@
-//! Files of other programs: without a seal, whatever they hold.
+//! Files of other programs, without a seal and with any content.
 
 use glam::DVec3;
 use twintac_shape::Pose;
@@ -35,7 +35,7 @@ fn read(bytes: &[u8]) -> Result<Recording, String> {
     Recording::read_parquet(&path).map_err(|e| e.to_string())
 }
 
-/// What reading says after every occurrence of some bytes was replaced by as many others.
+/// The error of reading a file in which all occurrences of some bytes were replaced by other bytes.
 fn error_with(old: &[u8], new: &[u8]) -> String {
     assert_eq!(old.len(), new.len());
     let mut bytes = recording().to_parquet(schema::MOUNTING).unwrap();
@@ -103,7 +103,8 @@ fn no_altered_byte_makes_the_reader_panic() {
     for place in 0..whole.len() {
         let mut bytes = whole.clone();
         bytes[place] ^= [0x01, 0x80, 0xff][place % 3];
-        // Without a seal a changed number may go unseen; what comes back keeps the promises of a recording all the same.
+        // Without a seal a changed number may be unnoticed, but what is read meets the conditions
+        // of a recording.
         if let Ok(recording) = read(&bytes) {
             recording.check().unwrap();
         }

@@ -18,15 +18,19 @@ use super::seal::Sealing;
 use super::{Column, schema, table};
 use crate::{Press, Provenance, Recording, RecordingError};
 
-/// A row group ends with the press that brings it to so many rows: about forty minutes of a sensor, some 30 MB.
+/// A row group ends with the press that brings it to this number of rows: about forty minutes of a
+/// sensor, some 30 MB.
 const ROWS: usize = 131_072;
 
 impl Recording {
-    /// Writes a Parquet file with one row per frame, through a temporary name. The same recording gives the same bytes.
+    /// Writes a Parquet file with one row per frame, through a temporary name. The same recording
+    /// gives the same bytes.
     ///
-    /// Columns: `press_index` (from 0), `press`, `mounting`, `indenter`, `control` and `provenance`; `time_s`; the pose
-    /// `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`; `force_n` (null where unknown); then `<taxel>_kpa` of all taxels and
-    /// `<taxel>_raw` (null where a reading is missing), and `<taxel>_valid`; and `<taxel>_temperature_c`, if any press has temperatures. The metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
+    /// Columns: `press_index` (from 0), `press`, `mounting`, `indenter`, `control` and
+    /// `provenance`; `time_s`; the pose `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`; `force_n`
+    /// (null if unknown); then for all taxels `<taxel>_kpa` and `<taxel>_raw` (null if missing),
+    /// and `<taxel>_valid`; and `<taxel>_temperature_c`, if any press has temperatures. The
+    /// metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
     ///
     /// # Errors
     ///
@@ -41,7 +45,8 @@ impl Recording {
         Ok(())
     }
 
-    /// The bytes of a file, without a seal; `mounting` is what the column of the mounting is called.
+    /// The bytes of a file without a seal. `mounting` is the name of the column of the
+    /// installation.
     #[cfg(test)]
     pub(super) fn to_parquet(&self, mounting: &'static str) -> Result<Vec<u8>, ParquetError> {
         let mut encoder = Encoder::new(
@@ -67,8 +72,9 @@ impl Recording {
     }
 }
 
-/// Writes presses as they come into a file like that of [`Recording::write_parquet`], in little memory however many they are. The file has
-/// its name once it is whole. The same presses give the same bytes.
+/// Writes presses one by one into a file like that of [`Recording::write_parquet`], with little
+/// memory for any number of presses. The file gets its name when it is complete. The same presses
+/// give the same bytes.
 #[derive(Debug)]
 pub struct RecordingWriter {
     encoder: Encoder<Sealing<BufWriter<PartialFile>>>,
@@ -112,8 +118,8 @@ impl RecordingWriter {
     /// Adds a press.
     ///
     /// # Errors
-    /// A press that is inconsistent ([`Recording::check`]), has temperatures in a file without, or whose name was there before; a file that cannot
-    /// be written.
+    /// The press is inconsistent ([`Recording::check`]), has temperatures although the file has
+    /// none, or its name exists already; or the file cannot be written.
     pub fn push(&mut self, press: Press) -> Result<(), RecordingError> {
         press.check(&self.encoder.waiting.taxels)?;
         let wrong = |problem: String| {
@@ -129,7 +135,7 @@ impl RecordingWriter {
             ));
         }
         if !self.names.insert(press.name.clone()) {
-            return wrong(format!("press name `{}` is there twice", press.name));
+            return wrong(format!("press name `{}` is given twice", press.name));
         }
         self.n_rows += press.time_s.len() as u64;
         self.encoder
@@ -137,7 +143,7 @@ impl RecordingWriter {
             .map_err(|error| problem(&self.path, error))
     }
 
-    /// Writes what waits, and gives the file its name. How many rows it has.
+    /// Writes the waiting presses, and gives the file its name. Returns the number of rows.
     ///
     /// # Errors
     /// [`RecordingError::Write`].
@@ -157,15 +163,15 @@ fn problem(path: &Path, error: ParquetError) -> RecordingError {
     RecordingError::write(path, io::Error::other(error))
 }
 
-/// Presses as row groups.
+/// Writes presses as row groups.
 struct Encoder<W: Write + Send> {
     writer: SerializedFileWriter<W>,
     /// The presses that wait for their row group.
     waiting: Recording,
     n_waiting_rows: usize,
-    /// Presses that were written.
+    /// Number of presses written.
     n_written: i32,
-    /// What the column of the mounting is called.
+    /// Name of the column of the installation.
     mounting: &'static str,
     has_temperatures: bool,
 }
@@ -210,7 +216,7 @@ impl<W: Write + Send> Encoder<W> {
         Ok(())
     }
 
-    /// Writes the presses that wait. A file has a row group, be it empty.
+    /// Writes the waiting presses. A file has at least one row group, which may be empty.
     fn put_group(&mut self) -> Result<(), ParquetError> {
         if self.waiting.presses.is_empty() && self.n_written > 0 {
             return Ok(());
@@ -234,7 +240,7 @@ impl<W: Write + Send> Encoder<W> {
 }
 
 impl<W: Write + Send> Encoder<Sealing<W>> {
-    /// Writes what waits, and the footer, which the sink holds back for its seal.
+    /// Writes the waiting presses and the footer, which the sink holds back for its seal.
     fn finish(mut self) -> io::Result<Sealing<W>> {
         self.put_group().map_err(io::Error::other)?;
         self.writer.flush()?;
@@ -251,7 +257,7 @@ impl<W: Write + Send> std::fmt::Debug for Encoder<W> {
     }
 }
 
-/// A recording's columns, with presses numbered on from `first`.
+/// A recording's columns, with presses numbered from `first`.
 fn columns(
     recording: &Recording,
     first: i32,
@@ -294,7 +300,8 @@ fn put<W: Write + Send>(
     }
 }
 
-/// Writes the next column of a row group. `present` tells for each row whether it has a value: 1 or 0.
+/// Writes the next column of a row group. `present` has 1 for each row with a value, and 0 for the
+/// others.
 pub(super) fn put_column<T: DataType, W: Write + Send>(
     writer: &mut SerializedRowGroupWriter<'_, W>,
     values: &[T::T],

@@ -1,11 +1,12 @@
-//! Attention of each sample of a series to all of them, in several heads (Vaswani et al., arXiv 1706.03762, section 3.2).
+//! Attention of each sample of a series to all of them, in several heads (Vaswani et al., arXiv
+//! 1706.03762, section 3.2).
 
 use twintac_learn::{Linear, Matrix};
 use twintac_random::{RandomStream, normal};
 
 use crate::series::N_SAMPLES;
 
-/// Queries, keys and values, and what is made of the heads.
+/// Linear layers for queries, keys and values, and for the output of the heads.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Attention {
     n_heads: usize,
@@ -15,13 +16,13 @@ pub(super) struct Attention {
     leave: Linear,
 }
 
-/// What the way back needs.
+/// Values that the backward pass needs.
 pub(super) struct Attended {
     input: Matrix,
     query: Matrix,
     key: Matrix,
     value: Matrix,
-    /// Of each series and head, how much each sample attends to each; `[n_series * n_heads][N_SAMPLES][N_SAMPLES]`.
+    /// Attention weights of each series and head; `[n_series * n_heads][N_SAMPLES][N_SAMPLES]`.
     shares: Vec<Matrix>,
     heads: Matrix,
 }
@@ -38,7 +39,7 @@ impl Attention {
         }
     }
 
-    /// `input` has the series one after the other; `[n_series * N_SAMPLES][width]`.
+    /// `input` has one series after another; `[n_series * N_SAMPLES][width]`.
     pub(super) fn forward(&self, input: Matrix) -> (Matrix, Attended) {
         let query = self.query.forward(&input);
         let key = self.key.forward(&input);
@@ -107,7 +108,7 @@ impl Attention {
         ((input.n_columns / self.n_heads) as f32).sqrt().recip()
     }
 
-    /// The parts of a matrix of all series that belong to one series and one head.
+    /// The parts of a matrix of all series that each belong to one series and one head.
     fn blocks(&self, input: &Matrix) -> impl Iterator<Item = Block> + use<> {
         let (n_heads, width) = (self.n_heads, input.n_columns / self.n_heads);
         let series = 0..input.n_rows() / N_SAMPLES;
@@ -133,7 +134,7 @@ impl Attention {
     }
 }
 
-/// Shares of a row of scores.
+/// Softmax of a row of scores, scaled first.
 fn softmax(row: &mut [f32], scale: f32) {
     let largest = row.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     row.iter_mut()
@@ -142,7 +143,7 @@ fn softmax(row: &mut [f32], scale: f32) {
     row.iter_mut().for_each(|share| *share /= sum);
 }
 
-/// Rows of one series, columns of one head.
+/// Rows of one series and columns of one head.
 struct Block {
     first_row: usize,
     first_column: usize,

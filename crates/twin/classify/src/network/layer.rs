@@ -1,4 +1,5 @@
-//! One encoder layer: attention, then a perceptron for each sample, each of normalized values and added to what came in.
+//! One encoder layer: attention, then a perceptron for each sample. Each acts on normalized values,
+//! and its result is added to its input.
 
 use twintac_learn::{Linear, Matrix, add};
 use twintac_random::{RandomStream, normal};
@@ -15,13 +16,13 @@ pub(super) struct Layer {
     narrow: Linear,
 }
 
-/// What the way back needs.
+/// Values that the backward pass needs.
 pub(super) struct Passed {
     first: Normed,
     attended: Attended,
     second: Normed,
     perceptron_input: Matrix,
-    /// What is above zero of the widened values.
+    /// The hidden values of the perceptron, after its rectifier.
     hidden: Matrix,
 }
 

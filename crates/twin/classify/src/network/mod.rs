@@ -1,4 +1,4 @@
-//! The network: an encoder of a series, and a class of what it makes of all samples.
+//! The network: an encoder of a series, and a classification from the encoded samples together.
 
 mod attention;
 mod layer;
@@ -12,14 +12,14 @@ use crate::series::N_SAMPLES;
 use layer::Layer;
 use norm::Norm;
 
-/// Deviation of the places in time at first.
+/// Standard deviation of the initial position embeddings.
 const PLACE: f64 = 0.02;
 
-/// All parameters; or a slope of each.
+/// All parameters, or the gradient of each.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Network {
     enter: Linear,
-    /// Added to each sample's token; `[N_SAMPLES * width]`.
+    /// Position embeddings, added to each sample's token; `[N_SAMPLES * width]`.
     places: Vec<f32>,
     layers: Vec<Layer>,
     norm: Norm,
@@ -50,7 +50,8 @@ impl Network {
         }
     }
 
-    /// Scores of each class; `input` has the series one after the other, `[n_series * N_SAMPLES][n_inputs]`, the scores are `[n_series][n_classes]`.
+    /// Scores of each class; `[n_series][n_classes]`. `input` has one series after another;
+    /// `[n_series * N_SAMPLES][n_inputs]`.
     pub(crate) fn scores(&self, input: &Matrix) -> Matrix {
         let mut tokens = self.tokens(input);
         for layer in &self.layers {
@@ -59,7 +60,7 @@ impl Network {
         self.leave.forward(&whole(self.norm.forward(&tokens).0))
     }
 
-    /// Mean cross-entropy of the true classes, and its slopes.
+    /// Mean cross-entropy of the true classes, and its gradient.
     pub(crate) fn loss_and_slopes(&self, input: &Matrix, classes: &[usize]) -> (f32, Self) {
         let mut slopes = self.zeros();
         let mut tokens = self.tokens(input);
@@ -110,7 +111,7 @@ impl Network {
             .chain(last)
     }
 
-    /// The same in the same order, to be changed.
+    /// All parameters in the same order, mutable.
     pub(crate) fn arrays_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
         let simple = self.enter.arrays_mut().into_iter().chain([&mut self.places]);
         let last = self.norm.arrays_mut().into_iter().chain(self.leave.arrays_mut());
@@ -120,13 +121,13 @@ impl Network {
     }
 }
 
-/// Each series as one row.
+/// Reshapes the tokens to one row for each series.
 fn whole(mut tokens: Matrix) -> Matrix {
     tokens.n_columns *= N_SAMPLES;
     tokens
 }
 
-/// Scores as probabilities.
+/// Converts scores to probabilities.
 pub(crate) fn softmax(scores: &mut [f32]) {
     let largest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     scores
@@ -136,7 +137,8 @@ pub(crate) fn softmax(scores: &mut [f32]) {
     scores.iter_mut().for_each(|score| *score /= sum);
 }
 
-/// Mean of minus the logarithm of the true classes' shares, and its slope by the scores.
+/// Mean negative logarithm of the true classes' probabilities, and its gradient with respect to the
+/// scores.
 fn cross_entropy(mut scores: Matrix, classes: &[usize]) -> (f32, Matrix) {
     let per_series = (classes.len() as f32).recip();
     let mut loss = 0.0;
@@ -154,7 +156,7 @@ mod tests {
     use super::*;
     use twintac_random::stream;
 
-    /// Slopes by differences, of every parameter of a small network.
+    /// Compares the gradients of all parameters of a small network with difference quotients.
     #[test]
     fn slopes_are_those_of_differences() {
         let settings = TrainSettings {

@@ -5,14 +5,14 @@ use twintac_learn::{Matrix, add};
 /// Keeps rows without variation finite.
 const EPSILON: f32 = 1e-5;
 
-/// Each row less its mean, over its deviation, times a gain, plus an offset.
+/// Each row minus its mean, over its deviation, times a gain, plus an offset.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Norm {
     gain: Vec<f32>,
     bias: Vec<f32>,
 }
 
-/// What the way back needs.
+/// Values that the backward pass needs.
 pub(super) struct Normed {
     /// Rows of zero mean and unit deviation.
     unit: Matrix,

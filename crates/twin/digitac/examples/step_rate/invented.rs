@@ -1,14 +1,14 @@
-//! A twin of a sensor that nobody has built, trained for a moment on presses that nobody has made.
+//! A twin of an invented sensor, trained briefly on invented presses.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use digitac::{DigitacError, Features, PairedPress, Scale, Split, TrainSettings, Twin, Variant, Warp, train};
 
-/// Frames of a press.
+/// Number of frames of a press.
 const N_FRAMES: usize = 60;
 
-/// What the gel would show at a moment, kPa or kPa/mm; `[n_taxels]`.
+/// Inputs of the twin at a frame, kPa or kPa/mm; `[n_taxels]`.
 pub(crate) fn seen(press: usize, frame: usize, n_taxels: usize) -> Vec<f64> {
     let depth = (0.05 * frame as f64).sin().max(0.0);
     (0..n_taxels)
@@ -31,7 +31,7 @@ pub(crate) fn features(press: usize, n_frames: usize, n_taxels: usize) -> Featur
     }
 }
 
-/// A twin of so many taxels, with layers as wide as usual.
+/// A twin of `n_taxels` taxels, with layers of the usual width.
 pub(crate) fn twin(variant: Variant, n_taxels: usize) -> Result<Twin, DigitacError> {
     let press = |number: usize| {
         let features = features(number, N_FRAMES, n_taxels);

@@ -1,6 +1,8 @@
-//! How fast a thousand twins are stepped: `cargo xtask bench twin` writes docs/benchmarks/twin.*
+//! Rate at which a thousand twins are stepped: `cargo xtask bench twin` writes
+//! docs/benchmarks/twin.*
 //!
-//! The twins' ways to be stepped take turns, so that what else the machine does falls on all of them alike.
+//! The ways of stepping the twins are timed in turns, so that other load on the machine affects all
+//! of them alike.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -21,12 +23,12 @@ use serde::Serialize;
 const COMMAND: &str = "cargo xtask bench twin";
 const N_TWINS: usize = 1000;
 const N_TAXELS: usize = 8;
-/// Frames of each twin that are timed at once.
+/// Frames of each twin that are timed together.
 const N_FRAMES: usize = 100;
-/// Turns, of which the median counts.
+/// Number of turns; the median counts.
 const N_TURNS: usize = 15;
 
-/// Rates of a variant, frames of one twin a second.
+/// Rates of a variant, in frames of one twin per second.
 #[derive(Serialize)]
 struct Rates {
     variant: Variant,
@@ -43,7 +45,8 @@ struct Benchmark {
     twins: usize,
     taxels: usize,
     threads: usize,
-    /// Of the machine, at the end: what is above its threads was other work, and made rates lower.
+    /// Load average of the machine at the end. If it is above the number of threads, other work has
+    /// lowered the rates.
     load_average: f64,
     rates: Vec<Rates>,
 }
@@ -78,13 +81,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Over the last minute; Linux alone tells.
+/// Load average over the last minute; available on Linux only.
 fn load_average() -> Result<f64, Box<dyn Error>> {
     let text = fs::read_to_string("/proc/loadavg")?;
     Ok(text.split(' ').next().unwrap_or_default().parse()?)
 }
 
-/// What is checked out, as git calls it.
+/// The checked-out commit, as named by git.
 fn commit() -> String {
     let output = Command::new("git")
         .args(["describe", "--always", "--dirty"])

@@ -1,8 +1,10 @@
-//! What few presses say of another sensor of the same kind.
+//! Adaptation of a twin to another sensor of the same kind, by few presses.
 //!
-//! Two casts differ in their gains, two mountings in their contact heights, and less so in all else. Everything is fitted at once, and pulled to
-//! what was learned as strongly as casts are alike: what few presses cannot tell stays. The more presses, the less pull. Presses of prescribed
-//! force tell the stiffness; of others, gains take it.
+//! Two casts differ mainly in their gains, and two installations of an indenter in their contact
+//! heights. All unknowns are fitted together, and regularized towards the learned values according
+//! to how much casts usually differ. Values that few presses do not determine therefore stay. The
+//! more presses, the weaker the regularization. Presses of prescribed force determine the
+//! stiffness; without them, the gains absorb it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,42 +17,47 @@ use crate::features::Sample;
 use crate::physical_fit::Posterior;
 use crate::{DigitacError, Features, Gains, Twin, Variant};
 
-/// What was adapted, and how sure it is: standard deviations of what the presses leave unknown.
+/// The adapted values with their uncertainty: standard deviations of what the presses leave
+/// undetermined.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
-    /// The presses that all was fitted to, by number.
+    /// The presses that were used, by number.
     pub used: Vec<usize>,
-    /// By how much the tip is deeper than recordings say, mm, by file.
+    /// True minus recorded depth of the tip, mm, by file.
     pub contact_offset_mm: BTreeMap<String, Estimate>,
-    /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where gains take it.
+    /// Ratio of the gel's stiffness to that of the simulated gel; `None` without presses of
+    /// prescribed force, where the gains absorb it.
     pub stiffness: Option<Estimate>,
-    /// Readings over port pressures; `[n_taxels]`.
+    /// Ratio of readings to port pressures; `[n_taxels]`.
     pub gain: Vec<Estimate>,
-    /// Port law: relative growth of a reading, 1/kPa; `[n_taxels]`, or empty if the twin has none.
+    /// Static nonlinearity of the ports: relative growth of a reading, 1/kPa; `[n_taxels]`, or
+    /// empty if the twin has none.
     pub stiffening_per_kpa: Vec<Estimate>,
     /// Shares of the overstresses in the readings; `[n_taxels][n_time_constants]`.
     pub memory: Vec<Vec<Estimate>>,
-    /// Time constants of the memory, s.
+    /// Time constants of the relaxation, s.
     pub time_constants_s: Vec<Estimate>,
-    /// Whether the correction by the twin's perceptron was kept. It is dropped where it would raise the error of these presses.
+    /// Whether the correction by the twin's perceptron was kept. It is dropped if it increases the
+    /// error of these presses.
     pub keeps_correction: bool,
 }
 
-/// A twin of another sensor, and its bench.
+/// A twin adapted to another sensor, and the sensor's test setup.
 #[derive(Clone, Debug)]
 pub struct Adapted {
     /// The twin.
     pub twin: Twin,
-    /// The bench that its presses were made on.
+    /// The test setup of the sensor's presses.
     pub bench: BenchEstimate,
-    /// What was adapted.
+    /// The adapted values.
     pub adaptation: Adaptation,
 }
 
-/// Adapts a twin and what was found of its bench to the presses `used` of another sensor.
+/// Adapts a twin and the estimate of its test setup to the presses `used` of another sensor.
 ///
 /// # Errors
-/// The paper's variant, which has no gains; no presses, or none that touches the gel; tables that do not go with the places; damaged presses.
+/// The paper's variant, which has no gains; no presses, or none that touches the gel; tables that
+/// do not belong to the locations; damaged presses.
 pub fn adapt(sensor: &NewSensor<'_>, used: &[usize]) -> Result<Adapted, DigitacError> {
     let twin = sensor.twin;
     if twin.variant() == Variant::Paper {
@@ -86,7 +93,7 @@ pub fn adapt(sensor: &NewSensor<'_>, used: &[usize]) -> Result<Adapted, DigitacE
     })
 }
 
-/// The barometers, and how well each number is known.
+/// The adapted barometers, with the uncertainty of each value.
 fn barometers(posterior: &Posterior) -> Adaptation {
     let gains = &posterior.gains;
     let estimate = |value: &dyn Fn(&Gains) -> f64| Estimate {

@@ -1,9 +1,10 @@
-//! The few presses that a twin is adapted with: those that tell the most.
+//! Selection of the presses for an adaptation: the most informative ones.
 //!
-//! Poses and the twin that is there choose; what was measured does not. The presses that are chosen are to leave as little as they can unknown of
-//! what all presses would read: each next one is the one after which the sum of the variances of all predictions is the smallest (I-optimal design,
-//! Atkinson, Donev and Tobias 2007, chapter 10; one after the other). That spreads them over files, whose contact heights differ, over taxels, and
-//! over distances from these.
+//! The selection uses poses and the available twin, not measurements. The selected presses should
+//! leave as little uncertainty as possible in the predictions of all presses: each next press is
+//! the one after which the sum of the variances of all predictions is the smallest (I-optimal
+//! design, Atkinson, Donev and Tobias 2007, chapter 10; one press after another). This spreads the
+//! presses over files, whose contact heights differ, over taxels, and over distances from these.
 
 use rand::seq::SliceRandom;
 
@@ -11,16 +12,16 @@ use super::NewSensor;
 use crate::numerics::inverse_symmetric;
 use crate::{DigitacError, seed};
 
-/// Of more candidates, chance takes so many.
+/// If there are more candidates than this, this many are drawn at random.
 const MAX_CANDIDATES: usize = 120;
-/// At each step chance leaves one in so many aside.
+/// At each step, one in this many candidates is randomly left out.
 const ASIDE: usize = 5;
 
-/// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. At each step chance leaves a fifth of
-/// the candidates aside.
+/// Presses among `candidates` for the adaptation of a twin, `n_presses` at most, in the order of
+/// their selection. At each step, a random fifth of the candidates is left out.
 ///
 /// # Errors
-/// No press that touches the gel; tables that do not go with the places; damaged presses.
+/// No press that touches the gel; tables that do not belong to the locations; damaged presses.
 pub fn choose_presses(
     sensor: &NewSensor<'_>,
     candidates: &[usize],
@@ -69,7 +70,7 @@ fn add(to: &mut [f64], matrix: &[f64]) {
     to.iter_mut().zip(matrix).for_each(|(to, value)| *to += value);
 }
 
-/// Of a symmetric matrix with one of which the lower triangle counts.
+/// Trace of the product of a symmetric matrix with one of which only the lower triangle counts.
 fn trace_of_product(symmetric: &[f64], lower: &[f64], n: usize) -> f64 {
     let row = |i: usize| -> f64 {
         let below: f64 = (0..i).map(|j| symmetric[i * n + j] * lower[i * n + j]).sum();

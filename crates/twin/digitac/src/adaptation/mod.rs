@@ -1,4 +1,5 @@
-//! A twin of one sensor, adapted to another from a few presses: which presses tell the most, and what they tell.
+//! A twin of one sensor, adapted to another from a few presses: selection of the most informative
+//! presses, and the adaptation.
 
 mod adapt;
 mod choose;

@@ -1,4 +1,4 @@
-//! Another sensor of the same kind, before a twin that does not know it yet.
+//! Another sensor of the same kind, to which a twin is to be adapted.
 
 use std::collections::BTreeSet;
 
@@ -8,25 +8,25 @@ use twintac_recording::Recording;
 use crate::bench_fit::{BenchEstimate, LearnedBench, Places};
 use crate::{DigitacError, Features, Twin, bench_fit};
 
-/// Another sensor of the same kind, pressed and simulated, before a twin that does not know it yet.
+/// Another sensor of the same kind, pressed and simulated, with a twin that is to be adapted to it.
 #[derive(Clone, Copy, Debug)]
 pub struct NewSensor<'a> {
-    /// Its presses.
+    /// The sensor's presses.
     pub recording: &'a Recording,
-    /// The places that they press.
+    /// The locations of the presses.
     pub places: &'a Places,
-    /// What answers the requests of `places`.
+    /// The tables for the requests of `places`.
     pub tables: &'a [DepthTable],
-    /// The twin, as it was learned.
+    /// The trained twin.
     pub twin: &'a Twin,
-    /// What was found of the bench where it was learned.
+    /// The estimate of the test setup on which it was trained.
     pub bench: &'a BenchEstimate,
-    /// Taxels that do not count for what all taxels share.
+    /// Excluded taxels, which do not influence values that all taxels share.
     pub left_out: &'a BTreeSet<usize>,
 }
 
 impl NewSensor<'_> {
-    /// Bench and barometers as they were learned.
+    /// Test setup and barometers as learned.
     pub(super) fn learned(&self) -> LearnedBench<'_> {
         LearnedBench {
             recording: self.recording,
@@ -38,12 +38,12 @@ impl NewSensor<'_> {
         }
     }
 
-    /// The simulated side of every press on a bench.
+    /// The simulated side of every press, for a test setup.
     pub(super) fn features(&self, bench: &BenchEstimate) -> Result<Vec<Features>, DigitacError> {
         bench_fit::features(self.recording, self.places, self.tables, bench)
     }
 
-    /// Presses that stay in the air tell nothing: some have to touch the gel.
+    /// An error if no press touches the gel: presses without contact carry no information.
     pub(super) fn refuse_untouched(
         &self,
         features: &[Features],

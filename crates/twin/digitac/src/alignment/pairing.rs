@@ -14,24 +14,25 @@ use crate::{DigitacError, Features};
 pub struct PairedPress {
     /// Name of the press in its recording.
     pub name: String,
-    /// The mounting of the indenter that it belongs to.
+    /// The installation (mounting) of the indenter that it belongs to.
     #[serde(alias = "file")]
     pub mounting: String,
     /// The indenter's name.
     pub indenter: String,
-    /// Place in the gel's plane, mm.
+    /// Location in the gel's plane, mm.
     pub place_mm: [f64; 2],
     /// The simulated side.
     pub features: Features,
-    /// Measured force, N; `[n_frames]`, if there was one.
+    /// Measured force, N; `[n_frames]`; `None` without a force sensor.
     pub measured_force_n: Option<Vec<f64>>,
-    /// Readings above the unloaded baseline, on the recording's own clock, kPa, NaN where one is missing; `[n_frames][n_taxels]`.
+    /// Readings above the unloaded baseline, on the recording's own clock, kPa; NaN where one is
+    /// missing; `[n_frames][n_taxels]`.
     #[serde(deserialize_with = "null_as_nan")]
     pub readings_kpa: Vec<Vec<f64>>,
     /// Whether the reading is usable; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
-    /// How the readings would have to be warped to rise and fall when the simulated gel does. Training and headline take
-    /// readings as they are.
+    /// The time warp that makes the readings rise and fall together with the simulated gel.
+    /// Training and headline figures use readings without it.
     pub warp: Warp,
 }
 
@@ -46,11 +47,11 @@ impl PairedPress {
     }
 }
 
-/// How measured and simulated frames are brought together.
+/// Settings of pairing measured and simulated frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PairSettings {
-    /// How far clocks may differ.
+    /// Limits of the difference between the clocks.
     pub warp: WarpSettings,
 }
 
@@ -64,7 +65,8 @@ impl Checked for PairSettings {
 /// Pairs every press of a recording with its simulation.
 ///
 /// # Errors
-/// Settings that cannot be; tables that do not go with the places; a press that contradicts itself.
+/// Settings outside their ranges; tables that do not belong to the locations; an inconsistent
+/// press.
 pub fn pair(
     recording: &Recording,
     places: &Places,
@@ -118,8 +120,8 @@ fn pair_press(
     })
 }
 
-/// Compares force with force; without a force sensor, the sum of the positive readings with the sum of the
-/// positive port pressures.
+/// Compares the measured force with the simulated one; without a force sensor, the sum of the
+/// positive readings with the sum of the positive port pressures.
 fn warp(press: &Press, features: &Features, settings: &WarpSettings) -> Warp {
     match &press.force_n {
         Some(force_n) => Warp::between(&press.time_s, force_n, &features.force_n, settings),

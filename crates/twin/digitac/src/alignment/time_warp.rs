@@ -1,10 +1,11 @@
 //! Dynamic time warping of a measured load onto a simulated one.
 //!
-//! Both loads are sampled at the same instants, so the path would be the diagonal if the clocks agreed. What
-//! is compared is the load's *rate* (derivative dynamic time warping, Keogh and Pazzani, SDM 2001): the
-//! instants at which a load begins to rise or fall are the same on both sides, while its level also shows relaxation and hysteresis, which
-//! the warp must not remove. Steps off the diagonal have a cost, so plateaus and noise are not moved; a Sakoe–Chiba window bounds how far
-//! any instant can be moved; and a warp that does not remove most of the mismatch is rejected.
+//! Both loads are sampled at the same instants, so the path would be the diagonal if the clocks
+//! agreed. The *rates* of the loads are compared (derivative dynamic time warping, Keogh and
+//! Pazzani, SDM 2001): the instants at which a load begins to rise or fall are the same on both
+//! sides, while its level also shows relaxation and hysteresis, which the warp must not remove.
+//! Steps off the diagonal have a cost, so plateaus and noise are not moved. A Sakoe-Chiba window
+//! bounds the shift of any instant. A warp that does not remove most of the mismatch is rejected.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
@@ -13,13 +14,13 @@ use twintac_config::{Checked, Ranges};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WarpSettings {
-    /// Half-width of the Sakoe–Chiba window, s. Zero switches the warp off.
+    /// Half-width of the Sakoe-Chiba window, s. Zero disables the warp.
     pub window_s: f64,
     /// Cost of each step off the diagonal, in units of the largest rate.
     pub step_cost: f64,
     /// Half-width over which rates are averaged, s.
     pub smoothing_s: f64,
-    /// Share of the cost without a warp above which a warp is rejected.
+    /// A warp is rejected if its cost is above this fraction of the cost without a warp.
     pub believed_below: f64,
 }
 
@@ -49,10 +50,10 @@ impl Checked for WarpSettings {
     }
 }
 
-/// When each simulated frame happened on the measurement's clock.
+/// The time of each simulated frame on the measurement's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Warp {
-    /// For each simulated frame the index, between frames, of the measurement that belongs to it;
+    /// For each simulated frame, the fractional index of the measured frame that belongs to it;
     /// `[n_frames]`.
     pub measured_index: Vec<f64>,
     /// Accumulated cost of the path, in units of the largest rate.
@@ -72,8 +73,8 @@ impl Warp {
         }
     }
 
-    /// Finds the warp between two loads of any unit, both `[n_frames]` at the instants `time_s`. A load that
-    /// never rises leaves time as it is.
+    /// Finds the warp between two loads in any units, both `[n_frames]` at the instants `time_s`.
+    /// If a load never rises, the warp is the identity.
     #[must_use]
     pub fn between(time_s: &[f64], measured: &[f64], simulated: &[f64], settings: &WarpSettings) -> Self {
         let n = time_s.len();
@@ -117,7 +118,8 @@ impl Warp {
         }
     }
 
-    /// Brings rows measured on the measurement's clock to the simulated frames; `[n_frames][n_columns]`.
+    /// Interpolates rows on the measurement's clock at the simulated frames;
+    /// `[n_frames][n_columns]`.
     #[must_use]
     pub fn apply(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
         self.measured_index
@@ -133,7 +135,8 @@ impl Warp {
             .collect()
     }
 
-    /// Brings marks of usable rows along: a warped row is usable where both rows that it is made of are.
+    /// Applies the warp to flags of usable rows: a warped row is usable where both rows that it is
+    /// interpolated from are usable.
     #[must_use]
     pub(crate) fn apply_valid(&self, rows: &[Vec<bool>]) -> Vec<Vec<bool>> {
         self.measured_index
@@ -146,7 +149,8 @@ impl Warp {
     }
 }
 
-/// The two rows around an index and the part of the way from the first to the second. At a row itself both are that one: the next may be missing.
+/// The two rows around an index and the fraction of the way from the first to the second. At a row
+/// itself, both are this row, because the next one may be missing.
 fn split(index: f64, n: usize) -> ([usize; 2], f64) {
     let i = (index.floor() as usize).min(n - 1);
     let fraction = index - i as f64;
@@ -187,7 +191,8 @@ fn normalized_rate(time_s: &[f64], load: &[f64], smoothing_s: f64) -> Vec<f64> {
     }
 }
 
-/// Pairs (measured, simulated) from the first frames to the last, and what they cost.
+/// The cheapest sequence of pairs (measured, simulated) from the first frames to the last, and its
+/// cost.
 fn cheapest_path(
     time_s: &[f64],
     measured: &[f64],
@@ -195,8 +200,8 @@ fn cheapest_path(
     settings: &WarpSettings,
 ) -> (Vec<(usize, usize)>, f64) {
     let n = time_s.len();
-    // Row j holds the measured frames i within the window of the simulated frame j, of which the diagonal is
-    // always one.
+    // Row j has the measured frames i within the window of the simulated frame j. The diagonal is
+    // always one of them.
     let low: Vec<usize> = time_s
         .iter()
         .map(|t| time_s.partition_point(|other| *other < t - settings.window_s))
@@ -256,9 +261,9 @@ fn cheapest_path(
 enum Step {
     Start,
     Diagonal,
-    /// The measurement stands still while the simulation goes on.
+    /// The measured frame stays while the simulation advances.
     Wait,
-    /// The measurement goes on while the simulation stands still.
+    /// The measurement advances while the simulated frame stays.
     Skip,
 }
 

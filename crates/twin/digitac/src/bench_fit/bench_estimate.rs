@@ -1,5 +1,5 @@
-//! What is unknown about a bench: the tip's radius, the height at which it touches, and the true stiffness
-//! of the gel.
+//! The unknowns of a test setup: the radius of the tip, the height at which it touches, and the
+//! true stiffness of the gel.
 
 use std::collections::BTreeMap;
 
@@ -8,37 +8,40 @@ use serde::{Deserialize, Serialize};
 use super::{Estimate, SmoothFactor};
 use crate::features::Gains;
 
-/// Values of a bench that no data sheet gives, fitted to training presses.
+/// Estimate of a test setup: values that no data sheet gives, fitted to training presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchEstimate {
-    /// Radius of the spherical tip, mm; `None` if the described indenter was taken as it is.
+    /// Radius of the spherical tip, mm; `None` if the described indenter was used unchanged.
     pub tip_radius_mm: Option<Estimate>,
-    /// By how much the tip is deeper than its recorded height says, mm, by file.
+    /// True minus recorded depth of the tip, mm, by file.
     pub contact_offset_mm: BTreeMap<String, Estimate>,
-    /// The same for files that were not fitted: the median of the fitted ones, mm.
+    /// The same for files that were not fitted, mm: the median of the fitted ones.
     pub contact_offset_elsewhere_mm: f64,
-    /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where it
-    /// cannot be told from the gains, and where the tip was fitted.
+    /// Ratio of the gel's stiffness to that of the simulated gel. `None` without presses of
+    /// prescribed force, because the stiffness then cannot be separated from the gains, and where
+    /// the tip was fitted.
     pub stiffness: Option<Estimate>,
-    /// Where ports are and how wide, against the description; `[n_taxels]`, or empty if they were taken as described.
+    /// Differences of the ports from their description; `[n_taxels]`, or empty if the described
+    /// ports were used.
     #[serde(default)]
     pub ports: Vec<PortEstimate>,
-    /// What tip and gel do otherwise than simulated; `None` if they were taken as they are.
+    /// Correction factor for differences between the real and the simulated tip and gel; `None` if
+    /// it was not fitted.
     #[serde(default)]
     pub smooth_factor: Option<SmoothFactor>,
-    /// Whether the gel remembers the presses before.
+    /// Whether relaxation goes on from press to press.
     #[serde(default)]
     pub has_history: bool,
-    /// The gains that went with these values.
+    /// The gains that were fitted together with these values.
     pub gains: Option<Gains>,
     /// Mean absolute deviation of the fit over the largest reading, %.
     pub deviation_percent: f64,
-    /// Warnings about the fit, in words.
+    /// Warnings of the fit, in words.
     pub doubts: Vec<String>,
 }
 
 impl BenchEstimate {
-    /// A bench that is exactly as described.
+    /// A test setup that is exactly as described.
     #[must_use]
     pub(crate) fn nominal() -> Self {
         Self {
@@ -55,7 +58,7 @@ impl BenchEstimate {
         }
     }
 
-    /// By how much the tip of a mounting is deeper than its recordings say, mm.
+    /// True minus recorded depth of the tip for an installation, mm.
     #[must_use]
     pub fn contact_offset_mm(&self, mounting: &str) -> f64 {
         self.contact_offset_mm
@@ -63,7 +66,8 @@ impl BenchEstimate {
             .map_or(self.contact_offset_elsewhere_mm, |offset| offset.value)
     }
 
-    /// The same for a sensor whose ports are described to be elsewhere in the gel's plane, mm; `[n_taxels]`.
+    /// The same for a sensor whose ports are described at other locations of the gel's plane, mm;
+    /// `[n_taxels]`.
     #[must_use]
     pub fn with_ports_at(mut self, ports_mm: &[[f64; 2]]) -> Self {
         if let Some(factor) = &mut self.smooth_factor {
@@ -72,24 +76,25 @@ impl BenchEstimate {
         self
     }
 
-    /// The gel's stiffness over the simulated gel's.
+    /// Ratio of the gel's stiffness to that of the simulated gel.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         self.stiffness.map_or(1.0, |stiffness| stiffness.value)
     }
 }
 
-/// How a port differs from its description.
+/// Difference of a port from its description.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PortEstimate {
-    /// How far it is shifted along x and y, mm.
+    /// Shift along x and y, mm.
     pub shift_mm: [f64; 2],
-    /// By how much its radius is larger, mm. The same for all ports of a sensor.
+    /// True minus described radius, mm. It is the same for all ports of a sensor.
     pub wider_mm: f64,
 }
 
 impl PortEstimate {
-    /// By how much this changes the port's pressure, from how the pressure changes with its place along x, along y and with its radius.
+    /// Change of the port's pressure, kPa, from the pressure's derivatives with respect to the
+    /// port's x, y and radius.
     pub(crate) fn change_kpa(&self, slope_kpa_per_mm: [f64; 3]) -> f64 {
         let [x, y, wider] = slope_kpa_per_mm;
         x * self.shift_mm[0] + y * self.shift_mm[1] + wider * self.wider_mm

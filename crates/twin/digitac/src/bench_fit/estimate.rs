@@ -1,18 +1,18 @@
-//! A fitted number and how well it is known.
+//! A fitted value with its standard error.
 
 use serde::{Deserialize, Serialize};
 
-/// A fitted number.
+/// A fitted value with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The value.
     pub value: f64,
-    /// Its standard error (from leaving out blocks of presses in turn), in the value's unit.
+    /// Its standard error, in the value's unit: from leaving out blocks of presses in turn.
     pub uncertainty: f64,
 }
 
 impl Estimate {
-    /// The value from all data with the standard error from fits that each leave out one block
+    /// The value from all data. The standard error comes from fits that each leave out one block
     /// (delete-a-group jackknife, Kott 2001).
     pub(crate) fn jackknife(value: f64, without_block: &[f64]) -> Self {
         let n = without_block.len() as f64;

@@ -1,4 +1,5 @@
-//! A bench, and its barometers, fitted to few presses: what these cannot tell stays near what was learned of another sensor.
+//! A test setup and its barometers, fitted to few presses. What these do not determine stays near
+//! the values learned on another sensor.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,13 +17,14 @@ use crate::physical_fit::{
 };
 use crate::{DigitacError, Features, Gains};
 
-/// Presses before one that is fitted to, which the gel still remembers.
+/// Number of presses before a fitted one whose relaxation is still in the gel.
 const REMEMBERED: usize = 2;
 
-/// What each press says of all unknowns, as a matrix, and what is known of each beforehand.
+/// The information of each press about all unknowns, as a matrix, and the prior information about
+/// each unknown.
 pub(crate) type Information = (BTreeMap<usize, Vec<f64>>, Vec<f64>);
 
-/// A bench and its barometers, as they were learned elsewhere, before presses that they do not know.
+/// A test setup and its barometers as learned elsewhere, with presses that they were not fitted to.
 #[derive(Clone, Copy)]
 pub(crate) struct LearnedBench<'a> {
     pub(crate) recording: &'a Recording,
@@ -34,8 +36,9 @@ pub(crate) struct LearnedBench<'a> {
 }
 
 impl LearnedBench<'_> {
-    /// Fits bench and barometers to the presses `used`. Of the bench, its contact heights and stiffness are fitted, and ports and smooth factor
-    /// where it has them; of the barometers, gains, port law and memory.
+    /// Fits setup and barometers to the presses `used`. Of the setup, contact heights and stiffness
+    /// are fitted, and ports and the correction factor where it has them; of the barometers, gains,
+    /// static nonlinearity and relaxation.
     pub(crate) fn fit(&self, used: &BTreeSet<usize>) -> Result<(BenchEstimate, Posterior), DigitacError> {
         let measured = |index: usize| &self.recording.presses[index].taxels_kpa[..];
         self.with_presses(used, &measured, |near, series| {
@@ -59,8 +62,9 @@ impl LearnedBench<'_> {
         })
     }
 
-    /// How much each of some presses would say of all unknowns, if it read what is predicted, `[n_presses][n_frames][n_taxels]` of the recording;
-    /// and what is known of each beforehand: see [`information`].
+    /// The information that each of some presses would give about all unknowns if it read the
+    /// predictions, `[n_presses][n_frames][n_taxels]` of the recording; and the prior information
+    /// about each unknown. See [`information`].
     pub(crate) fn information(
         &self,
         presses: &BTreeSet<usize>,
@@ -74,7 +78,7 @@ impl LearnedBench<'_> {
         })
     }
 
-    /// Does something with the presses `used` and those that the gel remembers then.
+    /// Calls `work` with the presses `used` and those whose relaxation is still in the gel.
     fn with_presses<'r, T>(
         &'r self,
         used: &BTreeSet<usize>,
@@ -127,7 +131,8 @@ impl LearnedBench<'_> {
     }
 }
 
-/// The presses `used` with those before them that the gel remembers, in the order in which it felt them.
+/// The presses `used` and those before them whose relaxation is still in the gel, in the order of
+/// the recording.
 fn remembered(recording: &Recording, used: &BTreeSet<usize>) -> Vec<usize> {
     let is_remembered = |index: usize| (index..=index + REMEMBERED).any(|later| used.contains(&later));
     let mountings = recording.presses.iter().map(|press| &press.mounting[..]);
@@ -135,7 +140,7 @@ fn remembered(recording: &Recording, used: &BTreeSet<usize>) -> Vec<usize> {
     ordered.filter(|&index| is_remembered(index)).collect()
 }
 
-/// A bench whose unknowns are pulled to what was learned.
+/// A test setup whose unknowns are regularized towards the learned values.
 struct NearLearned<'a> {
     problem: BenchProblem<'a>,
     learned: &'a BenchEstimate,

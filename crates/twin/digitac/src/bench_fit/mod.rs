@@ -1,4 +1,5 @@
-//! What is unknown about a bench, fitted to training presses: the tip's radius, the height at which it touches, the true stiffness of the gel.
+//! Setup calibration: the unknowns of a test setup (the radius of the tip, the height at which it
+//! touches, the true stiffness of the gel), fitted to training presses.
 
 mod bench_estimate;
 mod estimate;

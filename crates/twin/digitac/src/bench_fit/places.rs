@@ -1,4 +1,4 @@
-//! Which places a recording presses, so that each is simulated once.
+//! The distinct locations of a recording, so that each is simulated once.
 
 use glam::{DQuat, DVec2};
 use twintac_config::{Checked, Ranges};
@@ -9,21 +9,21 @@ use twintac_shape::Pose;
 use super::BenchEstimate;
 use crate::DigitacError;
 
-/// Places closer than this are one, mm.
+/// Locations closer than this count as one, mm.
 const SAME_PLACE_MM: f64 = 0.01;
-/// Turns closer than this are one, radians.
+/// Rotations closer than this count as one, radians.
 const SAME_TURN_RAD: f64 = 0.001;
-/// How much more force to simulate than was pressed.
+/// Ratio of simulated to pressed force.
 const FORCE_MARGIN: f64 = 1.1;
 
-/// How deep places are to be simulated.
+/// The depths to which locations are simulated.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlaceSettings {
-    /// How much deeper to simulate than was pressed, mm: room for the contact height to be corrected. Presses near the bottom of a gel
-    /// cost the most.
+    /// Simulated minus pressed depth, mm: a margin for corrections of the contact height. Presses
+    /// near the base of a gel cost the most.
     pub margin_mm: f64,
-    /// Depth at which to give up where the force was prescribed instead of the pose, mm.
+    /// Largest simulated depth where the force was prescribed instead of the pose, mm.
     pub force_control_depth_mm: f64,
 }
 
@@ -47,17 +47,18 @@ impl Checked for PlaceSettings {
     }
 }
 
-/// The distinct places of a recording.
+/// The distinct locations of a recording.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Places {
-    /// What to simulate, in the order in which the recording comes to it.
+    /// The tables to simulate, in the order in which the recording reaches their locations.
     pub requests: Vec<DepthTableRequest>,
-    /// For each press of the recording, its place in `requests`; `[n_presses]`.
+    /// For each press of the recording, the index of its location in `requests`; `[n_presses]`.
     pub of_press: Vec<usize>,
 }
 
 impl Places {
-    /// Gathers the places. Presses at one place share a request that reaches the deepest of them.
+    /// Collects the locations. Presses at one location share a request that reaches the deepest of
+    /// them.
     pub fn of(
         recording: &Recording,
         source: &dyn DepthTableSource,
@@ -100,8 +101,8 @@ impl Places {
         Ok(places)
     }
 
-    /// The same requests for a gel `stiffness` times as stiff as the simulated one, which has to be pressed with less or more force to
-    /// be pressed as deep.
+    /// The same requests for a gel that is `stiffness` times as stiff as the simulated one, which
+    /// has to be pressed with more or less force to reach the same depth.
     #[must_use]
     pub(crate) fn with_stiffness(mut self, stiffness: f64) -> Self {
         for request in &mut self.requests {
@@ -110,7 +111,7 @@ impl Places {
         self
     }
 
-    /// The same requests as the bench is known to be, with a little room.
+    /// The same requests for an estimated test setup, with a small margin.
     #[must_use]
     pub fn at_bench(self, bench: &BenchEstimate) -> Self {
         self.with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value))
@@ -127,7 +128,7 @@ impl Places {
     }
 }
 
-/// How many distinct places a recording presses.
+/// Number of distinct locations of a recording.
 pub(crate) fn n_places(recording: &Recording) -> Result<usize, DigitacError> {
     let keys = recording
         .presses
@@ -138,7 +139,7 @@ pub(crate) fn n_places(recording: &Recording) -> Result<usize, DigitacError> {
         .len())
 }
 
-/// Where the indenter is lowest; its place in the gel's plane stands for the press.
+/// The lowest pose of the indenter. Its location in the gel's plane represents the press.
 pub(crate) fn deepest_pose(press: &Press) -> Result<Pose, DigitacError> {
     let lowest = press
         .gel_from_indenter

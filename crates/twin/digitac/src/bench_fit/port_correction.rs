@@ -1,21 +1,21 @@
-//! What the ports and the tip of a bench do to the pressures that are simulated.
+//! Corrections of simulated pressures for the ports and the tip of a test setup.
 
 use std::collections::BTreeMap;
 
 use super::smooth_factor::DistanceSplines;
 use super::{BenchEstimate, PortEstimate, SmoothFactor};
 
-/// By how much pressures at the ports differ from those that are simulated, while the tip is at one place.
+/// Correction of simulated pressures at the ports while the tip is at one location.
 #[derive(Clone, Debug)]
 pub struct PortCorrection {
-    /// `[n_taxels]`, or empty if ports were taken as described.
+    /// Differences of the ports; `[n_taxels]`, or empty if the described ports are used.
     ports: Vec<PortEstimate>,
-    /// The smooth factor, with the splines of each port's distance.
+    /// The correction factor, with the splines of each port's distance.
     factor: Option<(SmoothFactor, Vec<DistanceSplines>)>,
 }
 
 impl BenchEstimate {
-    /// The correction of port pressures while the tip is at a place of the gel's plane, mm.
+    /// The correction of port pressures while the tip is at a location of the gel's plane, mm.
     #[must_use]
     pub fn correction_at(&self, place_mm: [f64; 2]) -> PortCorrection {
         let with_splines = |factor: &SmoothFactor| {
@@ -29,13 +29,14 @@ impl BenchEstimate {
         }
     }
 
-    /// The bench for an indenter that it was not fitted with, and that is as described: without what was found of tips, at the median of the
-    /// contact heights. What was found of ports and gel stays.
+    /// The test setup for an indenter that it was not fitted with, and whose description is right:
+    /// without the estimates of tips, and with the median of the contact heights. The estimates of
+    /// ports and gel stay.
     #[must_use]
     pub fn with_described_tip(&self) -> Self {
         Self {
             tip_radius_mm: None,
-            // Of a known tip, it is the gel's.
+            // If the tip was known, the correction factor belongs to the gel.
             smooth_factor: self
                 .smooth_factor
                 .clone()
@@ -47,8 +48,8 @@ impl BenchEstimate {
 }
 
 impl PortCorrection {
-    /// Corrects the simulated pressures of a frame, kPa; `[n_taxels]`. `slopes_kpa_per_mm` is how each changes with its port's place along
-    /// x, along y and with its radius.
+    /// Corrects the simulated pressures of a frame, kPa; `[n_taxels]`. `slopes_kpa_per_mm` are the
+    /// derivatives of each with respect to its port's x, y and radius.
     pub fn apply(
         &self,
         depth_mm: f64,

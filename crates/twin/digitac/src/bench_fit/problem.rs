@@ -1,4 +1,5 @@
-//! The presses, tables and unknowns that a bench is fitted with, as port pressures that answer to them.
+//! The presses, tables and unknowns of a setup calibration, as port pressures that depend on the
+//! unknowns.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,51 +14,53 @@ use crate::DigitacError;
 use crate::numerics::{Unknown, median};
 use crate::physical_fit::{Elastic, Pressures, Slope};
 
-/// Depths at which tables are resampled.
+/// Number of depths at which tables are resampled.
 const N_DEPTHS: usize = 96;
-/// They stand closer near the surface, by this power.
+/// Power by which these depths are closer together near the surface.
 const DEPTH_POWER: f64 = 1.5;
-/// Step of ln radius and ln stiffness for slopes.
+/// Step of ln radius and ln stiffness for derivatives.
 const STEP: f64 = 1e-3;
-/// Pull of the ports' radius to its description, for each square millimetre.
+/// Regularization of the ports' radius towards its description, per square millimetre.
 const RADIUS_PULL: f64 = 1e-3;
-/// Largest coefficient of the smooth factor.
+/// Largest coefficient of the correction factor.
 const FORM_LIMIT: f64 = 3.0;
-/// Presses must be spread over at least this along an axis for the ports' places along it to be fitted, mm.
+/// The locations of ports along an axis are fitted only if presses are spread along it by at least
+/// this, mm.
 const SPREAD_MM: f64 = 2.0;
 
 /// A press, in the order of the series.
 pub(crate) struct Along<'a> {
     pub(crate) press: &'a Press,
-    /// Its place among the resampled ones.
+    /// Index of its location among the resampled ones.
     pub(crate) place: usize,
     pub(crate) touch_z_mm: f64,
-    /// Whether its readings teach.
+    /// Whether its readings are used for training.
     pub(crate) is_used: bool,
 }
 
-/// A table over depth at evenly graded depths.
+/// A table over depth, resampled at graded depths.
 struct Resampled {
     depth_mm: f64,
-    /// Force, then of each taxel pressure and its three slopes; `[N_DEPTHS][1 + 4 * n_taxels]`, for each radius.
+    /// Force, then pressure and its three slopes of each taxel;
+    /// `[n_radii][N_DEPTHS][1 + 4 * n_taxels]`.
     rows: Vec<Vec<Vec<f64>>>,
 }
 
-/// What is unknown.
+/// An unknown of the setup calibration.
 #[derive(Clone, Copy, Debug)]
 enum Quantity {
-    /// The contact height of a mounting, mm.
+    /// The contact height of an installation, mm.
     ContactHeight(usize),
     LnRadius,
     LnStiffness,
-    /// By how much all ports are wider than described, mm.
+    /// True minus described radius of all ports, mm.
     PortRadius,
-    /// By how much a port is beside its description, mm.
+    /// Shift of a port from its description, mm.
     PortShift {
         taxel: usize,
         axis: usize,
     },
-    /// A coefficient of the smooth factor.
+    /// A coefficient of the correction factor.
     Coefficient(usize),
 }
 
@@ -75,24 +78,25 @@ pub(crate) struct BenchProblem<'a> {
     presses: Vec<Along<'a>>,
     /// Frames of each press.
     frames: Vec<Range<usize>>,
-    /// Mountings of prescribed pose, with their frames.
+    /// Installations of prescribed pose, with their frames.
     mountings: Vec<(String, Range<usize>)>,
     places: Vec<Resampled>,
     ln_radii: Vec<f64>,
     ln_stiffness: [f64; 2],
     /// Axes along which ports may be shifted.
     axes: Vec<usize>,
-    /// The form of an unknown tip, without its coefficients.
+    /// The correction factor without its coefficients.
     form: Option<SmoothFactor>,
     n_taxels: usize,
     settings: &'a BenchSettings,
 }
 
-/// How well what follows from fitted values is known.
+/// The estimate of a quantity that follows from the fitted values.
 pub(super) type EstimateOf<'a> = dyn Fn(&dyn Fn(&[f64]) -> f64) -> Estimate + 'a;
 
 impl<'a> BenchProblem<'a> {
-    /// `curves` are those of each radius at each place; `[n_radii][n_places]`. One radius, or none, is not fitted.
+    /// `curves` are those of each radius at each location; `[n_radii][n_places]`. With one radius
+    /// or none, the radius is not fitted.
     pub(crate) fn new(
         presses: Vec<Along<'a>>,
         curves: &[Vec<DepthCurves>],
@@ -151,7 +155,8 @@ impl<'a> BenchProblem<'a> {
         }
     }
 
-    /// The same with ports and a smooth factor that may differ from what was learned wherever something was.
+    /// The same, with ports and a correction factor that may differ from the learned ones, as far
+    /// as these were fitted.
     pub(super) fn near_learned(mut self, learned: &BenchEstimate) -> Self {
         let is_shifted = |axis: usize| learned.ports.iter().any(|port| port.shift_mm[axis] != 0.0);
         self.axes = (0..2).filter(|axis| is_shifted(*axis)).collect();
@@ -159,7 +164,7 @@ impl<'a> BenchProblem<'a> {
         self
     }
 
-    /// All that is unknown, in the order of values.
+    /// All unknowns, in the order of the values.
     fn quantities(&self) -> Vec<Quantity> {
         let mut quantities: Vec<Quantity> = (0..self.mountings.len()).map(Quantity::ContactHeight).collect();
         let scalars = [
@@ -186,22 +191,22 @@ impl<'a> BenchProblem<'a> {
         self.ln_stiffness[0] < self.ln_stiffness[1]
     }
 
-    /// What was learned of each unknown, and by how much another bench may differ from it: standard deviations. Ports are looked for around where
-    /// they are described.
+    /// For each unknown, the learned value and the standard deviation by which another test setup
+    /// may differ from it. Ports are sought around their described locations.
     pub(super) fn learned(&self, learned: &BenchEstimate, widths: &BenchWidths) -> Vec<(f64, f64)> {
         let of = |quantity: Quantity| match quantity {
             Quantity::ContactHeight(mounting) => (
                 learned.contact_offset_mm(&self.mountings[mounting].0),
                 widths.contact_offset_mm,
             ),
-            // Another bench has the same tip.
+            // The other test setup has the same tip.
             Quantity::LnRadius => (learned.tip_radius_mm.map_or(0.0, |radius| radius.value.ln()), 0.0),
             Quantity::LnStiffness => (learned.stiffness().ln(), widths.ln_stiffness),
             Quantity::PortRadius => (
                 learned.ports.first().map_or(0.0, |port| port.wider_mm),
                 widths.port_mm,
             ),
-            // Where a port of one cast is beside its description says nothing of another cast's.
+            // The shift of a port of one cast says nothing about the port of another cast.
             Quantity::PortShift { .. } => (0.0, widths.port_mm),
             Quantity::Coefficient(term) => {
                 let factor = learned.smooth_factor.as_ref();
@@ -239,7 +244,8 @@ impl<'a> BenchProblem<'a> {
         guess
     }
 
-    /// The estimate that values stand for; `estimate` says how well what follows from values is known. Mountings that taught nothing have none.
+    /// The test setup for fitted values; `estimate` adds standard errors. Installations without
+    /// training presses have no contact height.
     pub(crate) fn estimate(
         &self,
         values: &[f64],
@@ -295,13 +301,13 @@ impl<'a> BenchProblem<'a> {
             Quantity::LnStiffness => "the stiffness".to_owned(),
             Quantity::PortRadius => "the radius of the ports".to_owned(),
             Quantity::PortShift { taxel, axis } => {
-                format!("the place of port {taxel} along {}", ["x", "y"][axis])
+                format!("the position of port {taxel} along {}", ["x", "y"][axis])
             }
-            Quantity::Coefficient(term) => format!("term {term} of the smooth factor"),
+            Quantity::Coefficient(term) => format!("term {term} of the correction factor"),
         }
     }
 
-    /// How the pressures of all frames change with an unknown.
+    /// Derivative of the pressures of all frames with respect to an unknown.
     fn slope(&self, unknown: usize, quantity: Quantity, guess: &Guess, read: &Read) -> Slope {
         let all = 0..read.kpa.first().map_or(0, Vec::len);
         let quotient = |moved: &dyn Fn(f64) -> Guess| -> Vec<Vec<f64>> {
@@ -358,7 +364,7 @@ impl<'a> BenchProblem<'a> {
         }
     }
 
-    /// Pressures and their slopes by depth and by the ports, of each frame.
+    /// Pressures of each frame, with their derivatives with respect to depth and ports.
     fn read(&self, guess: &Guess) -> Read {
         let n_frames = self.frames.last().map_or(0, |frames| frames.end);
         let mut read = Read::zeros(
@@ -428,7 +434,8 @@ impl<'a> BenchProblem<'a> {
     }
 }
 
-/// Weights of the radii's tables for a radius between them: the polynomial in ln radius through all.
+/// Weights of the tables for the given radii that give the table for a radius between them: the
+/// polynomial in ln radius through all.
 pub(crate) fn radius_weights(ln_radii: &[f64], ln_radius: f64) -> Vec<f64> {
     if ln_radii.len() < 2 {
         return vec![1.0];
@@ -442,14 +449,14 @@ pub(crate) fn radius_weights(ln_radii: &[f64], ln_radius: f64) -> Vec<f64> {
     (0..ln_radii.len()).map(weight).collect()
 }
 
-/// Port pressures of all frames with slopes.
+/// Port pressures of all frames with derivatives.
 struct Read {
-    /// `[n_taxels][n_frames]`
+    /// Pressures, kPa; `[n_taxels][n_frames]`.
     kpa: Vec<Vec<f64>>,
     by_depth: Vec<Vec<f64>>,
-    /// By place along x, along y, and radius; `[n_taxels][3][n_frames]`
+    /// Derivatives with respect to the port's x, y and radius; `[n_taxels][3][n_frames]`.
     by_port: Vec<[Vec<f64>; 3]>,
-    /// Terms of the smooth factor; `[n_taxels][N_TERMS][n_frames]`, or none.
+    /// Terms of the correction factor; `[n_taxels][N_TERMS][n_frames]`, or empty.
     terms: Vec<Vec<Vec<f64>>>,
 }
 
@@ -510,7 +517,7 @@ impl Elastic for BenchProblem<'_> {
     }
 }
 
-/// Room for what is not simulated of tip and gel.
+/// The correction factor before it is fitted, with its reach and its depth from the presses.
 fn form(presses: &[Along<'_>], taxels: &Taxels) -> Option<SmoothFactor> {
     if taxels.ports_mm.is_empty() {
         return None;
@@ -578,7 +585,8 @@ impl Resampled {
         self.depth_mm * (index as f64 / (N_DEPTHS - 1) as f64).powf(DEPTH_POWER)
     }
 
-    /// Between which rows a depth lies, and how far; `None` above the gel. What is deeper than the table lies ahead of its last two rows.
+    /// The row below a depth and the fraction of the way to the next row; `None` above the gel.
+    /// Depths beyond the table are extrapolated from its last two rows.
     fn at_depth(&self, depth_mm: f64) -> Option<(usize, f64)> {
         if depth_mm <= 0.0 {
             return None;
@@ -610,7 +618,8 @@ impl Resampled {
     }
 }
 
-/// Between which rows a force lies, and how far; `None` without a force. What is more than the table has is at its end.
+/// The row below a force and the fraction of the way to the next row; `None` without a force.
+/// Forces beyond the table are at its end.
 fn at_force(table: &[Vec<f64>], force_n: f64) -> Option<(usize, f64)> {
     if force_n <= 0.0 {
         return None;

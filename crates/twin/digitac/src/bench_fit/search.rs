@@ -1,7 +1,8 @@
 //! Fits a [`BenchEstimate`] together with the barometers, in two steps.
 //!
-//! The tip's radius and the gel's stiffness change what has to be simulated. They are found first, from few places that are
-//! simulated for several radii. With the tables of all places that follow, the rest is found: contact heights, and where ports are.
+//! The radius of the tip and the stiffness of the gel change what has to be simulated. They are
+//! found first, from few locations that are simulated for several radii. All other unknowns, such
+//! as contact heights and locations of ports, are then found with the tables of all locations.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,14 +18,16 @@ use crate::numerics::minimize;
 use crate::physical_fit::{BarometerModel, Elastic, Fitted, Series, Solution, fit};
 use crate::{DigitacError, Features, Gains};
 
-/// Places of each file that the first step looks at, at least.
+/// Smallest number of locations of each file that the first step uses.
 const MIN_PLACES_OF_FILE: usize = 3;
-/// A press that by itself would put the contact farther than this from its file's is worth a warning, mm.
+/// A press is worth a warning if the contact height that fits it best differs from that of its file
+/// by more than this, mm.
 const SUSPICIOUS_MM: f64 = 0.08;
 /// Tolerance of a press's own contact height, mm.
 const TOLERANCE_MM: f64 = 2e-3;
 
-/// Fits what the tables of a recording depend on, to some of its presses: the tip's radius and the gel's stiffness.
+/// Fits the quantities that the tables of a recording depend on, the radius of the tip and the
+/// stiffness of the gel, to some of its presses.
 pub fn fit_bench(
     recording: &Recording,
     places: &Places,
@@ -39,7 +42,7 @@ pub fn fit_bench(
     let chosen = choose(recording, places, train, settings.n_places);
     if chosen.is_empty() {
         return Err(DigitacError::TooFew {
-            expected: "presses to fit the bench to".into(),
+            expected: "presses for the setup calibration".into(),
             found: "none".into(),
         });
     }
@@ -71,7 +74,7 @@ pub fn fit_bench(
         [] => vec![None],
         radii => radii.iter().copied().map(Some).collect(),
     };
-    // All radii in one request: the source may work on them side by side.
+    // All radii are in one request, so that the source may work on them in parallel.
     let of_radius = |radius: &Option<f64>| here.clone().with_tip_radius(*radius).requests;
     let requests: Vec<_> = radii.iter().flat_map(of_radius).collect();
     let tables = source.depth_tables(&requests).map_err(DigitacError::Simulation)?;
@@ -90,7 +93,8 @@ pub fn fit_bench(
     bench.solve(&curves, radii_mm, &place_of)
 }
 
-/// The same from the tables of all places, which were simulated for each radius of the settings; `[n_radii][n_places]`.
+/// As [`fit_bench`], from the tables of all locations, which were simulated for each radius of the
+/// settings; `[n_radii][n_places]`.
 pub(crate) fn fit_radius(
     recording: &Recording,
     places: &Places,
@@ -108,8 +112,9 @@ pub(crate) fn fit_radius(
     bench.solve(&curves, settings.radii_mm(), &|press| places.of_press[press])
 }
 
-/// Fits the rest to all presses that teach, with the tables of all places: contact heights, the places of ports, and the barometers. All
-/// presses are passed through, so that the gel remembers those that do not teach.
+/// Fits all other unknowns to all training presses, with the tables of all locations: contact
+/// heights, ports, and barometers. All presses are simulated in turn, so that relaxation after
+/// other presses is taken into account.
 pub fn refine_bench(
     recording: &Recording,
     places: &Places,
@@ -142,9 +147,10 @@ pub fn refine_bench(
     Ok(bench)
 }
 
-/// Presses at places spread evenly over the taxels, and over the largest readings; every file has some.
+/// Presses at locations spread evenly over the taxels and over the largest readings. Each file has
+/// some.
 fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usize) -> Vec<usize> {
-    // By place, the taxel that reads the most, and what.
+    // By location, the taxel with the largest reading, and this reading.
     let mut most: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
     let mut by_file: BTreeMap<&str, BTreeSet<usize>> = BTreeMap::new();
     for &index in train {
@@ -186,7 +192,7 @@ fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usi
         .collect()
 }
 
-/// Numbers of presses with those of one mounting together, otherwise in their order.
+/// Numbers of presses, with those of one installation together, otherwise in their order.
 pub(crate) fn in_order<'a>(mountings: impl Iterator<Item = &'a str>) -> Vec<usize> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     let mut keyed: Vec<(usize, usize)> = mountings
@@ -201,21 +207,21 @@ fn ordered(recording: &Recording) -> impl Iterator<Item = usize> {
     in_order(recording.presses.iter().map(|press| &press.mounting[..])).into_iter()
 }
 
-/// Presses to be fitted to.
+/// The presses and settings of a fit.
 struct Fit<'a> {
     recording: &'a Recording,
     places: &'a Places,
     settings: &'a BenchSettings,
     taxels: &'a Taxels,
-    /// Presses in the order in which the gel felt them.
+    /// Presses in the order in which the gel was pressed.
     presses: Vec<usize>,
-    /// Those whose readings teach.
+    /// Presses whose readings are used for training.
     used: BTreeSet<usize>,
     has_history: bool,
 }
 
 impl<'a> Fit<'a> {
-    /// To some presses alone, as if the gel had rested before each mounting.
+    /// A fit to some presses alone, as if the gel had rested before each installation.
     fn rested(
         recording: &'a Recording,
         places: &'a Places,
@@ -318,7 +324,7 @@ impl<'a> Fit<'a> {
         })
     }
 
-    /// Presses that touch elsewhere than the rest of their file, found with the barometers fixed.
+    /// Presses whose contact height differs from that of their file, found with fixed barometers.
     fn odd_presses(
         &self,
         curves: &[DepthCurves],

@@ -1,4 +1,4 @@
-//! How a bench is fitted: what people write, and what the sensor's description says.
+//! Settings of the setup calibration, and what it needs of the sensor's description.
 
 use std::collections::BTreeSet;
 
@@ -7,47 +7,55 @@ use twintac_config::{Checked, Ranges};
 
 use crate::features::{TIME_CONSTANTS_S, check_time_constants};
 
-/// How a bench is fitted.
+/// Settings of the setup calibration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BenchSettings {
-    /// Tip radii to simulate, mm, at increasing size; the fit interpolates between them. Default: 2, 3.6 and 6.5 if the tip's radius is unknown, and otherwise none: the
-    /// indenter is taken as described.
+    /// Tip radii to simulate, mm, in increasing order; the fit interpolates between them. Default:
+    /// 2, 3.6 and 6.5 if the radius of the tip is unknown, otherwise none: the indenter is used as
+    /// described.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tip_radii_mm: Option<Vec<f64>>,
-    /// How many places, spread over taxels and readings, the fit looks at; more where a file would have too few.
+    /// Number of locations that the fit uses, spread over taxels and readings; more where a file
+    /// would have too few.
     pub n_places: usize,
-    /// Largest correction of the contact height, mm. Zero fits none. What it puts beyond the margin of
-    /// [`PlaceSettings`](crate::PlaceSettings) is not simulated: tables go straight on.
+    /// Largest correction of the contact height, mm. With 0, it is not fitted. Depths beyond the
+    /// margin of [`PlaceSettings`](crate::PlaceSettings) are not simulated; the fit extrapolates
+    /// tables linearly.
     pub contact_offset_limit_mm: f64,
-    /// How far a port may be from where it is described, mm. Zero fits no places.
+    /// Largest shift of a port from its described location, mm. With 0, locations are not fitted.
     pub port_shift_limit_mm: f64,
-    /// Pull of a port to its place, for each square millimetre. Many presses in a plane, of several shapes, tell places well and need less of it.
+    /// Regularization of a port's shift, per square millimetre. Many presses over a plane, with
+    /// several shapes, determine the locations well and need less of it.
     pub port_shift_pull: f64,
-    /// By how much the radius of all ports may differ from its description, mm. Zero fits none.
+    /// Largest difference of the radius of all ports from its description, mm. With 0, it is not
+    /// fitted.
     pub port_radius_limit_mm: f64,
-    /// Smallest and largest stiffness over the simulated one. Fitted to presses of prescribed force, if the tip is known: a blunter tip on a
-    /// stiffer gel makes the same contact.
+    /// Smallest and largest ratio of the stiffness to the simulated one. It is fitted to presses of
+    /// prescribed force, if the tip is known: a blunter tip on a stiffer gel makes the same
+    /// contact.
     pub stiffness_limits: [f64; 2],
-    /// Time constants of the barometers' memory that the fit starts from, s.
+    /// Initial time constants of the barometers' viscoelastic relaxation, s.
     pub time_constants_s: Vec<f64>,
-    /// Whether barometers may read otherwise than in proportion to the pressure.
+    /// Whether the response of a barometer to pressure may be nonlinear.
     pub port_law: bool,
-    /// Whether the gel remembers the presses before.
+    /// Whether relaxation goes on from press to press.
     pub history: bool,
-    /// Whether what tip and gel do otherwise than simulated is fitted, as a smooth factor of the distance from the ports and of depth.
+    /// Whether a correction factor is fitted for differences between the real and the simulated tip
+    /// and gel: a smooth function of the distance from the ports and of depth.
     pub smooth_factor: bool,
-    /// Pull of that factor to one.
+    /// Regularization of this factor towards 1.
     pub smooth_factor_pull: f64,
-    /// How many blocks of places are left out in turn for the uncertainties. Zero finds none.
+    /// Number of blocks of locations that are left out in turn for the standard errors. With 0,
+    /// there are none.
     pub n_blocks: usize,
 }
 
 impl BenchSettings {
-    /// Radii to look for a tip of unknown radius between, mm.
+    /// Radii between which the radius of an unknown tip is sought, mm.
     pub const UNKNOWN_TIP_RADII_MM: [f64; 3] = [2.0, 3.6, 6.5];
 
-    /// Radii to simulate, mm; none if the indenter is taken as described.
+    /// Radii to simulate, mm; none if the indenter is used as described.
     pub(crate) fn radii_mm(&self) -> &[f64] {
         self.tip_radii_mm.as_deref().unwrap_or_default()
     }
@@ -107,11 +115,12 @@ impl Checked for BenchSettings {
     }
 }
 
-/// What a sensor's description says of its taxels.
+/// Ports and excluded taxels from a sensor's description.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Taxels {
-    /// Places of their ports in the gel's plane, mm; `[n_taxels]`. Where they are not known, no smooth factor is fitted.
+    /// Locations of the ports in the gel's plane, mm; `[n_taxels]`. If they are not known, no
+    /// correction factor is fitted.
     pub ports_mm: Vec<[f64; 2]>,
-    /// Those whose readings are not to be trusted, by index: fits and headline figures leave them out.
+    /// Excluded taxels, by index: fits and headline figures do not use their readings.
     pub left_out: BTreeSet<usize>,
 }

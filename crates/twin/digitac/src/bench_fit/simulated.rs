@@ -1,4 +1,4 @@
-//! Tables over depth, read along presses as the bench is known to be.
+//! Tables over depth, read along presses for an estimated test setup.
 
 use twintac_depth_table::{DepthCurves, DepthTable};
 use twintac_recording::{Control, Press, Recording};
@@ -7,10 +7,10 @@ use super::{BenchEstimate, Places, deepest_pose};
 use crate::features::zero_frames;
 use crate::{DigitacError, Features};
 
-/// How far beyond its end a table is still trusted, mm or N.
+/// Distance beyond its end up to which a table counts as valid, mm or N.
 const BEYOND: f64 = 1e-6;
 
-/// The simulated side of every press of a recording. `tables` answer `places.requests`, whatever their tip
+/// The simulated side of every press of a recording. `tables` answer `places.requests`, for any tip
 /// radius.
 pub fn features(
     recording: &Recording,
@@ -34,7 +34,7 @@ pub fn features(
     Ok(features)
 }
 
-/// Interpolates the table of each place.
+/// Interpolates the table of each location.
 pub(crate) fn curves(
     places: &Places,
     tables: &[DepthTable],
@@ -55,7 +55,7 @@ pub(crate) fn curves(
         .collect()
 }
 
-/// Reads the curves of a place along a press.
+/// Reads the curves of a location along a press.
 pub(crate) fn features_along(
     curves: &DepthCurves,
     press: &Press,
@@ -132,7 +132,7 @@ pub(crate) fn features_along(
     })
 }
 
-/// A press without what is simulated: enough to say when it was in contact.
+/// A press without simulated values: enough to know when it was in contact.
 pub(crate) fn bare_features(press: &Press, touch_z_mm: f64) -> Features {
     let depth_mm = match press.control {
         Control::Pose => depths_mm(press, touch_z_mm, 0.0),
@@ -150,7 +150,8 @@ pub(crate) fn bare_features(press: &Press, touch_z_mm: f64) -> Features {
     }
 }
 
-/// Writes into the features of each press how long ago the press before it ended, if that was one of the same mounting on the same clock.
+/// Writes into the features of each press the time since the end of the press before it, if that
+/// was one of the same installation on the same clock.
 pub(crate) fn follow_each_other(presses: &[Press], features: &mut [Features]) {
     for (pair, features) in presses.windows(2).zip(&mut features[1..]) {
         let [before, press] = pair else { continue };

@@ -1,17 +1,18 @@
-//! By how much benches of one description differ.
+//! Differences between test setups of one description.
 
-/// By how much two benches differ: standard deviations of the unknowns of a fit.
+/// Differences between two test setups: standard deviations of the unknowns of a fit.
 pub(super) struct BenchWidths {
     pub(super) contact_offset_mm: f64,
     pub(super) ln_stiffness: f64,
-    /// Of a port's place along an axis, and of all ports' radius.
+    /// Of a port's location along an axis, and of the radius of all ports.
     pub(super) port_mm: f64,
-    /// Of a coefficient of the smooth factor.
+    /// Of a coefficient of the correction factor.
     pub(super) factor: f64,
 }
 
 impl BenchWidths {
-    /// Mountings differ by some hundredths of a millimetre, ports of one board less; a tip that nobody documented leaves the most unknown.
+    /// Contact heights of installations differ by some hundredths of a millimetre, ports of one
+    /// board by less. A tip without documentation has the largest uncertainty.
     pub(super) const USUAL: Self = Self {
         contact_offset_mm: 0.05,
         ln_stiffness: 0.3,

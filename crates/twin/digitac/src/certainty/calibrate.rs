@@ -1,4 +1,4 @@
-//! The twin made again without some of what taught it, to see how far off it then is.
+//! Fits the twin again without some of its training presses, and finds its errors on these.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -18,60 +18,62 @@ use crate::{
     Variant, train,
 };
 
-/// Part of the readings that is to lie within the intervals.
+/// Fraction of the readings that the intervals have to cover.
 const LEVEL: f64 = 0.9;
-/// How many times the twin is made again for the intervals.
+/// Number of times that the twin is fitted again for the intervals.
 const N_FOLDS: usize = 4;
-/// Fewer inner presses than these tell nothing about errors.
+/// With fewer inner presses than this, no intervals are made.
 const FEWEST_PRESSES: usize = 8;
-/// Part of the frames of left-out presses that is not flagged.
+/// Fraction of the frames of left-out presses that is not flagged.
 const NOT_FLAGGED: f64 = 0.99;
-/// Part of the presses that is left out as the deepest and as the outermost.
+/// The deepest and the outermost presses that are left out are one in this many.
 const UNLIKE_PART: usize = 5;
-/// Limits of how much intervals widen for each unit of unlikeness.
+/// Limits of the widening of intervals for each unit of the OOD score.
 const GROWTH: [f64; 2] = [0.25, 10.0];
 
-/// What a twin is made of, to make it again.
+/// Everything that a twin is made of, to make it again.
 pub struct Lessons<'a> {
-    /// The presses, as recorded.
+    /// The recorded presses.
     pub recording: &'a Recording,
-    /// The same beside the gel, with the bench as it was found.
+    /// The same presses paired with the simulated gel, for the fitted test setup.
     pub presses: &'a [PairedPress],
-    /// Their places.
+    /// Their locations.
     pub places: &'a Places,
-    /// Tables of the places; `[n_places]`.
+    /// Tables of the locations; `[n_places]`.
     pub tables: &'a [DepthTable],
-    /// Contacts at the places; `[n_places]`.
+    /// Contacts at the locations; `[n_places]`.
     pub contacts: &'a [Contact],
-    /// What was found about the bench.
+    /// Estimate of the test setup.
     pub bench: &'a BenchEstimate,
-    /// How it is fitted.
+    /// Settings of the setup calibration.
     pub bench_settings: &'a BenchSettings,
-    /// What the sensor's description says of its taxels.
+    /// Ports and excluded taxels from the sensor's description.
     pub taxels: &'a Taxels,
-    /// How twins are trained.
+    /// Settings of the training.
     pub train: &'a TrainSettings,
-    /// Seed of a training.
+    /// Seed of the training.
     pub seed: u64,
-    /// Presses whose places fall into the same square of this side belong together, mm.
+    /// Presses whose locations are in the same square of this side belong together, mm.
     pub block_mm: f64,
-    /// Largest readings, and taxels that are left out.
+    /// Largest readings, and excluded taxels.
     pub scale: &'a Scale,
 }
 
-/// A frame of a press that did not teach the twin which predicted it.
+/// A frame of a press that was not used to train the twin that predicted it.
 #[derive(Clone)]
 struct Frame {
     unlikeness: f64,
     depth_mm: f64,
-    /// What was known of each usable reading, and by how much it is off, kPa.
+    /// For each usable reading, what is known before the measurement, and the error, kPa.
     readings: Vec<(Known, f64)>,
 }
 
-/// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without a quarter of what taught, four times; and
-/// without the deepest and the outermost fifth. `None` if too few presses teach.
+/// Finds the intervals and the OOD score of a twin of a variant, for a division of presses. Setup
+/// and twin are fitted again four times without a quarter of the training presses, and without the
+/// deepest and the outermost fifth. `None` if there are too few training presses.
 ///
-/// A perceptron on top of the physics is left out of these twins: it corrects little, and takes most of a training's time.
+/// The twins that are fitted again have no perceptron on top of the physics: it corrects little,
+/// and takes most of the time of a training.
 ///
 /// # Errors
 /// Those of the fits.
@@ -138,7 +140,8 @@ pub fn calibrate(
 }
 
 impl Certainty {
-    /// The same for a twin that was then made of more presses: its intervals are those of the twin before, and these presses count as taught.
+    /// The same for a twin that was then trained on more presses: the intervals stay those of the
+    /// earlier twin, and these presses make up the training set.
     #[must_use]
     pub fn taught_by(&self, lessons: &Lessons<'_>, teachers: &[usize]) -> Self {
         Self {
@@ -153,7 +156,8 @@ impl Lessons<'_> {
         self.contacts[self.places.of_press[press]].place_mm
     }
 
-    /// Teachers divided by place, such that places of a division lie between others. The outermost of each indenter are in none.
+    /// Training presses divided by location, such that the locations of one division lie between
+    /// others. The outermost presses of each indenter are in no division.
     fn folds(&self, teachers: &BTreeSet<usize>) -> Vec<BTreeSet<usize>> {
         let mut limits: BTreeMap<&str, [[f64; 2]; 2]> = BTreeMap::new();
         for &press in teachers {
@@ -183,7 +187,8 @@ impl Lessons<'_> {
         folds
     }
 
-    /// The deepest teachers, and the outermost along the axis on which they are spread the most.
+    /// The deepest training presses, and the outermost ones at one end of the axis with the largest
+    /// range of locations.
     fn unlike(&self, teachers: &[usize]) -> Result<[BTreeSet<usize>; 2], DigitacError> {
         let n = teachers.len().div_ceil(UNLIKE_PART);
         let most = |value: &dyn Fn(usize) -> f64| {
@@ -203,7 +208,7 @@ impl Lessons<'_> {
         Ok([most(&depth_mm), most(&|press| self.place_mm(press)[axis])])
     }
 
-    /// Frames of presses, predicted by a twin of what else teaches.
+    /// Frames of the presses `left`, predicted by a twin of all other training presses.
     fn without(
         &self,
         left: &BTreeSet<usize>,
@@ -258,7 +263,7 @@ impl Lessons<'_> {
         Ok(frames)
     }
 
-    /// The presses beside the gel, with a bench that is fitted to some of them.
+    /// The paired presses for a test setup that is fitted to some of them.
     fn remade(&self, teachers: &[usize]) -> Result<Vec<PairedPress>, DigitacError> {
         let settings = BenchSettings {
             n_blocks: 0,

@@ -1,4 +1,4 @@
-//! How sure a twin is of its readings.
+//! Intervals and OOD scores of a twin.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
@@ -7,20 +7,20 @@ use super::Contact;
 use super::spread::{Known, Spread};
 use super::taught::Taught;
 
-/// How sure a twin is of its readings, learned from presses that it was made again without.
+/// Uncertainty of a twin, learned from presses that were left out when it was fitted again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Certainty {
-    /// Part of the readings that lies within the intervals, %.
+    /// Fraction of the readings that the intervals are made to cover, %.
     pub level_percent: f64,
-    /// Contacts more unlike than this to what taught are flagged.
+    /// Contacts with a larger OOD score are flagged.
     pub threshold: f64,
-    /// Presses and readings behind the intervals.
+    /// Numbers of presses and of readings that the intervals were learned from.
     pub learned_from: [usize; 2],
     pub(super) taught: Taught,
     pub(super) spread: Spread,
-    /// Half an interval over the spread, in the air and in contact.
+    /// Half an interval over the spread, for non-contact frames and for contact.
     pub(super) factors: [f64; 2],
-    /// By how much intervals widen for each unit of unlikeness above one.
+    /// Relative widening of the intervals for each unit of the OOD score above 1.
     pub(super) growth: f64,
 }
 
@@ -44,28 +44,29 @@ impl Checked for Certainty {
     }
 }
 
-/// How sure a twin is along a press. All vectors have the same length, `n_frames`.
+/// Uncertainty of a twin along a press. All vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PressCertainty {
     /// Half the width of the interval around each reading, kPa; `[n_frames][n_taxels]`.
     pub half_width_kpa: Vec<Vec<f64>>,
-    /// How unlike the contact is to what taught the twin: below about one it lies between what taught.
+    /// OOD score of the contact: below about 1, it lies between training contacts.
     pub unlikeness: Vec<f64>,
-    /// Whether the contact is too unlike for readings and intervals to be trusted.
+    /// Whether the contact is out of distribution, so that readings and intervals cannot be
+    /// trusted.
     pub is_unlike: Vec<bool>,
 }
 
 impl Certainty {
-    /// How unlike a contact at a depth is to what taught the twin: below about one it lies between what taught, in place, depth and the indenter's shape. 0 above the
-    /// gel. Allocates nothing.
+    /// OOD score of a contact at a depth: below about 1, it lies between training contacts in
+    /// location, depth and contact geometry. 0 above the gel. Allocates no memory.
     #[must_use]
     pub fn unlikeness(&self, contact: &Contact, depth_mm: f64) -> f64 {
         self.taught
             .unlikeness(contact.place_mm, &contact.underside, depth_mm)
     }
 
-    /// Half the widths of the intervals around the readings of a frame, kPa; `[n_taxels]`. `rates_kpa_per_s` are the readings' changes since the frame before.
-    /// Allocates nothing.
+    /// Half widths of the intervals around the readings of a frame, kPa; `[n_taxels]`.
+    /// `rates_kpa_per_s` are the rates of change since the previous frame. Allocates no memory.
     pub(crate) fn half_widths_kpa(
         &self,
         (unlikeness, depth_mm): (f64, f64),
@@ -87,7 +88,7 @@ impl Certainty {
         }
     }
 
-    /// How sure the twin is along a press. `contact` gives the contact of a frame.
+    /// Uncertainty along a press. `contact` gives the contact of a frame.
     pub fn along<'c>(
         &self,
         contact: impl Fn(usize) -> &'c Contact,
@@ -117,7 +118,7 @@ impl Certainty {
     }
 }
 
-/// How fast readings change at a frame, from the frame before, kPa/s.
+/// Rates of change of the readings at a frame, from the frame before, kPa/s; `[n_taxels]`.
 pub(super) fn rates_kpa_per_s(time_s: &[f64], readings_kpa: &[Vec<f64>], frame: usize) -> Vec<f64> {
     let before = frame.saturating_sub(1);
     let since_s = (time_s[frame] - time_s[before]).max(1e-6);

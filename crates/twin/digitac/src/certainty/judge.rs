@@ -1,4 +1,4 @@
-//! Whether intervals hold what they promise, on presses that taught nothing.
+//! Coverage and width of intervals on presses that were not used for training.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,23 +6,23 @@ use super::{Certainty, Contact};
 use crate::evaluation::predict_some;
 use crate::{PairedPress, Places, Scale, Twin};
 
-/// How well a twin knows how sure it is, on presses that taught nothing. Taxels that are left out do not count.
-/// A figure over nothing is `None`.
+/// Quality of a twin's intervals, on presses that were not used for training. Excluded taxels do
+/// not count. A figure is `None` if there is nothing to count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CertaintyScore {
-    /// Readings that were judged: all usable ones, in the air too.
+    /// Number of evaluated readings: all usable ones, including those of non-contact frames.
     pub n_readings: usize,
-    /// Part of them within their interval, %. The intervals promise [`Certainty::level_percent`].
+    /// Fraction of them within their interval, %. It should be [`Certainty::level_percent`].
     pub covered_percent: Option<f64>,
-    /// Mean width of the intervals, over the largest reading of the file, %.
+    /// Mean width of the intervals over the largest reading of the file, %.
     pub mean_width_percent: Option<f64>,
-    /// Readings of frames in contact.
+    /// Number of evaluated readings of frames in contact.
     pub n_in_contact: usize,
-    /// Part of these within their interval, %.
+    /// Fraction of these within their interval, %.
     pub covered_in_contact_percent: Option<f64>,
-    /// Mean width of their intervals, over the largest reading of the file, %.
+    /// Mean width of their intervals over the largest reading of the file, %.
     pub mean_width_in_contact_percent: Option<f64>,
-    /// Part of the frames in contact that is flagged as unlike what taught, %.
+    /// Fraction of the frames in contact that is flagged as out of distribution, %.
     pub flagged_percent: Option<f64>,
 }
 
@@ -49,12 +49,13 @@ impl Sum {
     }
 }
 
-/// So many of all, %; `None` of none.
+/// A fraction, %; `None` if there is nothing.
 fn percent(part: usize, all: usize) -> Option<f64> {
     (all > 0).then(|| 100.0 * part as f64 / all as f64)
 }
 
-/// Judges the intervals of a twin on some presses of a recording. `contacts` are those of the places, `[n_places]`.
+/// Evaluates the intervals of a twin on some presses of a recording. `contacts` are those of the
+/// locations, `[n_places]`.
 #[must_use]
 pub fn score_certainty(
     (twin, certainty): (&Twin, &Certainty),
@@ -104,8 +105,8 @@ pub fn score_certainty(
     }
 }
 
-/// The area under the curve of true over false alarms: how probable it is that a number of `positive` is larger than one of `negative`; ties count half. `None` if
-/// one of them is empty.
+/// Area under the ROC curve (AUROC): the probability that a number of `positive` is larger than one
+/// of `negative`; ties count half. `None` if one of the two is empty.
 #[must_use]
 pub fn area_under_curve(negative: &[f64], positive: &[f64]) -> Option<f64> {
     if negative.is_empty() || positive.is_empty() {

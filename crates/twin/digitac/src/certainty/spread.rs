@@ -1,13 +1,13 @@
-//! How much a reading is likely to be off, from what is known before it is measured.
+//! The probable size of a reading's error, from what is known before the measurement.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
 
 use crate::numerics::minimize;
 
-/// Readings that the fit looks at, at most.
+/// Largest number of readings that the fit uses.
 const MOST_READINGS: usize = 8_000;
-/// Rounds over all parts.
+/// Number of rounds over all parts.
 const N_ROUNDS: usize = 4;
 /// Tolerance of the logarithm of a part.
 const TOLERANCE: f64 = 0.05;
@@ -17,26 +17,26 @@ const TOLERANCE: f64 = 0.05;
 pub(super) struct Known {
     /// The twin's reading, kPa.
     pub(super) reading_kpa: f64,
-    /// Its change, kPa/s.
+    /// Its rate of change, kPa/s.
     pub(super) rate_kpa_per_s: f64,
     /// Largest reading of the frame, kPa.
     pub(super) largest_kpa: f64,
-    /// How unlike the contact is to what taught, up to one.
+    /// OOD score of the contact, at most 1.
     pub(super) unlikeness: f64,
 }
 
-/// Parts of a reading's spread, which add up as squares do.
+/// Parts of a reading's spread. Their squares are added.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Spread {
-    /// What is always there, kPa.
+    /// Constant part, kPa.
     still_kpa: f64,
-    /// Over the reading.
+    /// Relative to the reading.
     of_reading: f64,
-    /// Over the largest reading of the frame.
+    /// Relative to the largest reading of the frame.
     of_largest: f64,
-    /// Over the largest reading of the frame, for each unit of unlikeness.
+    /// Relative to the largest reading of the frame, for each unit of the OOD score.
     of_unlike: f64,
-    /// Over the reading's rate of change, s.
+    /// Relative to the reading's rate of change, s.
     of_rate_s: f64,
 }
 
@@ -62,7 +62,7 @@ impl Checked for Spread {
 }
 
 impl Spread {
-    /// Fits the parts to errors, kPa: the most likely ones if errors are distributed as Laplace's law says.
+    /// Fits the parts to errors, kPa, by maximum likelihood for errors with a Laplace distribution.
     pub(super) fn fit(errors: &[(Known, f64)]) -> Self {
         let thin = errors.len().div_ceil(MOST_READINGS).max(1);
         let errors: Vec<(Known, f64)> = errors.iter().copied().step_by(thin).collect();

@@ -1,4 +1,4 @@
-//! What taught a twin, and how unlike it another contact is.
+//! The training set of a twin, and the OOD score of other contacts.
 
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
@@ -7,31 +7,32 @@ use twintac_shape::Underside;
 
 use crate::{DigitacError, PairedPress, Places};
 
-/// Places nearer than this are one, mm.
+/// Locations nearer than this count as one, mm.
 const SAME_PLACE_MM: f64 = 0.1;
-/// Part of the taught places whose nearest other place is within one spacing.
+/// Fraction of the training locations whose nearest other location is within one spacing.
 const SPACING_PART: f64 = 0.9;
-/// Undersides that dent a gel so much alike, at a millimetre, are one.
+/// Contact geometries whose difference at a depth of one millimetre is below this count as one.
 const SAME_UNDERSIDE: f64 = 0.01;
-/// How much deeper than taught counts as one, over the deepest that taught. A reading grows with about the depth to the power of 1.5: this is a change of 2 %,
-/// about what a good twin errs by.
+/// An excess of depth over a training press counts as one if it is this fraction of the largest
+/// training depth. A reading grows with about the power 1.5 of depth, so this is a change of 2 %,
+/// about the error of a good twin.
 const DEPTH_PART: f64 = 0.015;
-/// What unlikeness of undersides counts as one.
+/// The difference of contact geometries that counts as one.
 const SHAPE_PART: f64 = 0.1;
-/// Over how many spacings a press tells about depth and shape.
+/// Distance at which a training press informs about depth and shape, in spacings.
 const REACH: f64 = 3.0;
 
-/// Where and with what a gel is touched.
+/// Location and contact geometry of a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// Place of the indenter's origin in the gel's plane, mm.
+    /// Location of the indenter's origin in the gel's plane, mm.
     pub place_mm: [f64; 2],
-    /// The indenter's underside, turned as it presses.
+    /// The indenter's underside (contact geometry), rotated as it presses.
     pub underside: Underside,
 }
 
 impl Contact {
-    /// The contacts of a recording's places; `[n_places]`.
+    /// The contacts at a recording's locations; `[n_places]`.
     ///
     /// # Errors
     /// An indenter that the source does not know.
@@ -48,14 +49,14 @@ impl Contact {
     }
 }
 
-/// The presses that taught a twin.
+/// The training presses of a twin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Taught {
-    /// What was pressed with, and how deep where.
+    /// Each contact geometry, with the location and the largest depth of its presses.
     undersides: Vec<(Underside, Vec<Deepest>)>,
-    /// How far places are from each other, mm.
+    /// Distance between neighbouring training locations, mm.
     spacing_mm: f64,
-    /// How much deeper than taught counts as one, mm.
+    /// Excess of depth that counts as one, mm.
     depth_step_mm: f64,
 }
 
@@ -85,7 +86,7 @@ impl Checked for Taught {
 }
 
 impl Taught {
-    /// Gathers teachers; `contacts` are those of the places, `[n_places]`.
+    /// Collects training presses; `contacts` are those of the locations, `[n_places]`.
     pub(crate) fn by(
         presses: &[PairedPress],
         places: &Places,
@@ -125,10 +126,13 @@ impl Taught {
         }
     }
 
-    /// How unlike a contact at a depth is to what taught. Below about one it lies between what taught; 0 above the gel.
+    /// OOD score of a contact at a depth: below about 1, it lies between training contacts; 0 above
+    /// the gel.
     ///
-    /// The larger of two: how far the nearest place that was pressed is, in spacings; and the least, over all presses, of how much less deep a press went, how unlike
-    /// its underside is and, three times as forgiving, how far it is, put together as sides of a box.
+    /// It is the larger of two numbers. The first is the distance to the nearest training location,
+    /// in spacings. The second is the smallest Euclidean norm, over all training presses, of three
+    /// numbers: the excess of depth over the press, the difference of the contact geometries, and a
+    /// third of the distance in spacings.
     pub(crate) fn unlikeness(&self, place_mm: [f64; 2], underside: &Underside, depth_mm: f64) -> f64 {
         if depth_mm <= 0.0 {
             return 0.0;
@@ -146,7 +150,7 @@ impl Taught {
         nearest.max(least.sqrt())
     }
 
-    /// How far taught places are from each other, mm.
+    /// Distance between neighbouring training locations, mm.
     pub(crate) fn spacing_mm(&self) -> f64 {
         self.spacing_mm
     }
@@ -156,7 +160,8 @@ fn distance_mm(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// The number that a part of some numbers does not exceed; `None` of none. Sorts them.
+/// The number that a fraction of the numbers does not exceed; `None` if there are none. Sorts the
+/// numbers.
 pub(super) fn quantile(numbers: &mut [f64], part: f64) -> Option<f64> {
     numbers.sort_unstable_by(f64::total_cmp);
     let last = numbers.len().checked_sub(1)?;

@@ -1,4 +1,4 @@
-//! How sure a twin is of a gel of formulas.
+//! Uncertainty of a twin, tested on a gel of formulas.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -15,7 +15,7 @@ use crate::{
     SplitSettings, Taxels, TrainSettings, Twin, Variant, pair, predict, refine_bench, train,
 };
 
-/// A twin of the formulas, and all that it was made of.
+/// A twin of the formulas, and everything that it was made of.
 struct Made {
     recording: Recording,
     places: Places,
@@ -116,7 +116,8 @@ fn intervals_cover_what_they_promise_on_presses_that_taught_nothing() {
     for covered in [found.covered_percent, found.covered_in_contact_percent].map(Option::unwrap) {
         assert!((87.0..=93.0).contains(&covered), "{found:?}");
     }
-    // Noise alone has 90 % within 1.645 deviations of 0.3 % of 130 kPa.
+    // With noise alone, 90 % of the readings are within 1.645 standard deviations; one is 0.3 % of
+    // 130 kPa.
     let largest_kpa = made.scale.largest_kpa.values().copied().fold(0.0, f64::max);
     let of_noise = 200.0 * 1.645 * 0.003 * 130.0 / largest_kpa;
     let width_percent = found.mean_width_percent.unwrap();

@@ -1,4 +1,5 @@
-//! One division of the presses: bench, twin and baselines fitted to what teaches, judged on what was held out.
+//! One division of the presses: test setup, twin and baselines are fitted to its training presses
+//! and evaluated on the held-out ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -16,36 +17,38 @@ use crate::{
     calibrate, choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
 };
 
-/// A recording, the gel at its places, and how twins of it are made.
+/// A recording, the tables of its locations, and the settings from which twins are made.
 pub struct Bench<'a> {
     /// The presses.
     pub recording: &'a Recording,
-    /// Their places.
+    /// The locations of the presses.
     pub places: &'a Places,
-    /// Tables of all places, for each tip radius of the settings, or as described if there are none; `[n_radii][n_places]`.
+    /// Tables of all locations, for each tip radius of the settings, or for the described tip if
+    /// there are none; `[n_radii][n_places]`.
     pub tables: &'a [Vec<DepthTable>],
-    /// Contacts at the places; `[n_places]`.
+    /// Contacts at the locations; `[n_places]`.
     pub contacts: &'a [Contact],
-    /// Presses whose places fall into the same square of this side belong together, mm; `None` to judge no intervals, which take several times as long.
+    /// Presses whose locations are in the same square of this side belong together, mm. `None`:
+    /// intervals are not evaluated, because this takes several times as long.
     pub intervals_block_mm: Option<f64>,
-    /// How the bench is fitted.
+    /// Settings of the setup calibration.
     pub bench: &'a BenchSettings,
-    /// How frames are paired.
+    /// Settings of the pairing.
     pub pair: &'a PairSettings,
-    /// How twins are trained.
+    /// Settings of the training.
     pub train: &'a TrainSettings,
-    /// Seed of a training.
+    /// Seed of the training.
     pub seed: u64,
-    /// What the sensor's description says of its taxels.
+    /// Ports and excluded taxels from the sensor's description.
     pub taxels: &'a Taxels,
 }
 
-/// The errors on what one division held out.
+/// Errors on the held-out presses of one division.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// Which file, indenter or taxel; empty if presses were drawn.
+    /// The held-out file, indenter or taxel; empty if presses were drawn.
     pub held_out: String,
-    /// Presses that were scored.
+    /// Number of scored presses.
     pub n_presses: usize,
     /// The variant that validation presses chose.
     pub variant: Variant,
@@ -53,24 +56,27 @@ pub struct Judgement {
     pub twin: Errors,
     /// The errors of each variant.
     pub variants: BTreeMap<Variant, Errors>,
-    /// Errors of a power of depth times a function of distance; `None` for a taxel, whose gain it has not learned.
+    /// Errors of the parametric baseline (a power of depth times a function of distance). `None`
+    /// for a held-out taxel, because the baseline has no gain for it.
     pub kernel: Option<Errors>,
-    /// The tip radius that the teaching presses gave, mm, if it was fitted.
+    /// The tip radius from the training presses, mm, if it was fitted.
     pub tip_radius_mm: Option<f64>,
-    /// The intervals of the twin's readings, if they were judged.
+    /// The intervals of the twin's readings, if they were evaluated.
     #[serde(default)]
     pub certainty: Option<CertaintyScore>,
-    /// How well what was held out is told from what taught, if it is of another kind.
+    /// How well held-out contacts are detected as out of distribution, if they are of another kind
+    /// than the training contacts.
     #[serde(default)]
     pub told_apart: Option<ToldApart>,
-    /// Frames deeper than the simulation went, which are scored all the same.
+    /// Number of frames deeper than the simulation. They are scored all the same.
     pub n_frames_not_simulated: usize,
-    /// All frames that were scored.
+    /// Number of all scored frames.
     pub n_frames: usize,
 }
 
-/// Fits bench, twin and baselines to the presses of a division that teach, and judges them on the others. The contact height of a file
-/// of which nothing teaches comes from its first presses, which are not scored ([`recalibrate`]).
+/// Fits test setup, twin and baselines to the training and validation presses of a division, and
+/// evaluates them on the test presses. If a file has no training presses, its contact height comes
+/// from its first presses, which are not scored ([`recalibrate`]).
 ///
 /// # Errors
 /// Those of the fits; too few presses.
@@ -171,7 +177,7 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
 }
 
 impl Bench<'_> {
-    /// How sure the twin of a division is, if intervals are to be judged.
+    /// The intervals of a division's twin, if they are to be evaluated.
     fn certainty(
         &self,
         (fold, variant): (&Fold, Variant),
@@ -200,7 +206,8 @@ impl Bench<'_> {
         calibrate(&lessons, &fold.split, variant)
     }
 
-    /// Adds the contact heights of files of which nothing teaches; gives the presses that are left to judge.
+    /// Adds the contact heights of files without training presses. Returns the presses that remain
+    /// for the evaluation.
     fn touch_new_files(
         &self,
         fold: &Fold,
@@ -233,7 +240,7 @@ impl Bench<'_> {
         Ok(test)
     }
 
-    /// The table of each place for the tip radius that was found.
+    /// The table of each location for the fitted tip radius.
     fn tables_at(&self, found: &BenchEstimate) -> Vec<DepthTable> {
         let (Some(radius), true) = (found.tip_radius_mm, self.tables.len() > 1) else {
             return self.tables[0].clone();

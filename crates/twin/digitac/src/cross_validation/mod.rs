@@ -1,4 +1,5 @@
-//! A twin made and judged anew for each way to hold presses out: nothing of a division knows what another one has seen.
+//! A twin made and evaluated again for each way to hold presses out. Nothing of one division uses
+//! results of another.
 
 mod judge;
 mod new_taxel;

@@ -1,4 +1,5 @@
-//! A taxel that taught nothing: its gain from one press, and all else as the other taxels have it.
+//! A held-out taxel: its gain comes from one press, all other values are the means of the other
+//! taxels.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +8,7 @@ use twintac_recording::Recording;
 use crate::numerics::minimize;
 use crate::{DigitacError, Features, PairedPress, Twin};
 
-/// How far from the other taxels' mean the gain is looked for, as a factor.
+/// Largest ratio of the gain to the mean of the other taxels, and of that mean to the gain.
 const REACH: f64 = 20.0;
 /// Tolerance of ln gain.
 const TOLERANCE: f64 = 1e-4;
@@ -21,7 +22,8 @@ pub(super) fn without(recording: &Recording, taxel: usize) -> Recording {
     recording
 }
 
-/// The twin with the taxel's gain from the teacher with its largest reading, by least absolute deviations.
+/// The twin with the taxel's gain from the training press with the taxel's largest reading, by
+/// least absolute deviations.
 pub(super) fn with_gain(
     twin: &Twin,
     taxel: usize,
@@ -31,7 +33,7 @@ pub(super) fn with_gain(
 ) -> Result<Twin, DigitacError> {
     let Some(press) = largest(pairs, teachers, taxel) else {
         return Err(DigitacError::TooFew {
-            expected: format!("a press that {} feels", twin.taxels()[taxel]),
+            expected: format!("a press with readings of {}", twin.taxels()[taxel]),
             found: "none".into(),
         });
     };
@@ -42,7 +44,7 @@ pub(super) fn with_gain(
         others.clone().map(of).sum::<f64>() / others.count().max(1) as f64
     };
     let start = mean_of_others(&|k| gains.gain[k]);
-    // The gel's part of the port law belongs to the port pressure.
+    // The gel's part of the static nonlinearity depends on the port pressure.
     let stiffening = mean_of_others(&|k| gains.stiffening_per_kpa[k] * gains.gain[k]);
     let memory: Vec<f64> = (0..gains.memory.first().map_or(0, Vec::len))
         .map(|j| mean_of_others(&|k| gains.memory[k][j]))
@@ -69,7 +71,7 @@ pub(super) fn with_gain(
     Ok(twin.with_gains(gains))
 }
 
-/// The press among some with the largest reading of a taxel.
+/// The press with the largest reading of a taxel, among some.
 fn largest(pairs: &[PairedPress], among: &[usize], taxel: usize) -> Option<usize> {
     let peak = |press: &PairedPress| {
         let rows = press.readings_kpa.iter().zip(&press.valid);

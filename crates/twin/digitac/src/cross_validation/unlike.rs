@@ -1,4 +1,4 @@
-//! Whether contacts of a kind that taught nothing are told from those of the kinds that taught.
+//! Detection of held-out contacts of another kind as out of distribution.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,25 @@ use serde::{Deserialize, Serialize};
 use crate::certainty::{Taught, area_under_curve};
 use crate::{Contact, Fold, HeldOut, PairedPress, Places};
 
-/// How well contacts of another kind are told from those of the kinds that taught, by how unlike they are to what taught.
+/// How well the OOD score separates contacts of another kind from those of the kinds in the
+/// training set.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ToldApart {
-    /// The area under the curve of true over false alarms, %: how probable it is that a frame of the other kind is the more unlike one.
+    /// AUROC of the OOD score, %: the probability that a frame of the other kind has the larger
+    /// score.
     pub area_percent: f64,
-    /// Frames of the other kind: in contact, and deeper than all that taught with this indenter, or farther than one spacing from the region that taught, or with an indenter
-    /// that did not teach.
+    /// Number of frames of the other kind: in contact, and deeper than all training presses with
+    /// this indenter, or farther than one spacing from the training region, or with an indenter
+    /// that is not in the training set.
     pub n_unlike: usize,
-    /// Frames of the kinds that taught: those of the validation presses in contact, which count as not taught here, where they are not deeper than what taught.
+    /// Number of frames of the kinds in the training set: those of validation presses in contact,
+    /// where they are not deeper than the training presses. Validation presses do not belong to the
+    /// training set here.
     pub n_like: usize,
 }
 
-/// Compares what a division holds out with its validation presses. `None` for divisions whose presses are of the kinds that taught.
+/// Compares the held-out presses of a division with its validation presses. `None` for divisions
+/// whose held-out presses are of the kinds in the training set.
 pub(super) fn tell_apart(
     fold: &Fold,
     test: &[usize],

@@ -1,4 +1,4 @@
-//! Baselines that a twin is compared with: a prediction of zero, and a polynomial without physics.
+//! Baselines for a twin: a prediction of zero, and a polynomial without physics.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,8 @@ use crate::PairedPress;
 
 /// Highest power of the depth.
 const DEPTH_DEGREE: usize = 3;
-/// Highest degree in the position if all presses lie on a line, and highest total degree if they lie on a plane.
+/// Highest degree in the position if all presses are on a line, and highest total degree if they
+/// are in a plane.
 const LINE_DEGREE: usize = 8;
 const PLANE_DEGREE: usize = 6;
 /// Ridge over the mean diagonal of the normal matrix.
@@ -24,8 +25,9 @@ pub(crate) fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// A polynomial in depth and position for each indenter and taxel, fitted by ridge regression. It does not use time, does not transfer
-/// between indenters, and does not extrapolate: positions are clamped to the range of the training presses.
+/// A polynomial in depth and position for each indenter and taxel, fitted by ridge regression. It
+/// does not use time, does not transfer between indenters, and does not extrapolate: positions are
+/// clamped to the range of the training presses.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StaticPolynomial {
     by_indenter: BTreeMap<String, Fit>,
@@ -47,7 +49,8 @@ impl StaticPolynomial {
         }
     }
 
-    /// Readings of a press, kPa; `[n_frames][n_taxels]`. Zeros for an indenter that was not fitted.
+    /// Predicted readings of a press, kPa; `[n_frames][n_taxels]`. Zeros for an indenter that was
+    /// not fitted.
     #[must_use]
     pub(crate) fn predict(&self, press: &PairedPress) -> Vec<Vec<f64>> {
         self.by_indenter
@@ -59,11 +62,11 @@ impl StaticPolynomial {
 #[derive(Clone, Debug, PartialEq)]
 struct Fit {
     depth_mm: f64,
-    /// Center and half the extent along x and y, mm.
+    /// Center and half range along x and y, mm.
     frame_mm: [[f64; 2]; 2],
-    /// Degrees in depth, x and y.
+    /// Degrees in depth, x and y; `[n_terms]`.
     terms: Vec<[usize; 3]>,
-    /// `[n_taxels][n_terms]`
+    /// Coefficients; `[n_taxels][n_terms]`.
     coefficients: Vec<Vec<f64>>,
 }
 
@@ -119,7 +122,7 @@ impl Fit {
                 0.0
             }
         });
-        // Chebyshev polynomials keep high degrees apart.
+        // Chebyshev polynomials keep terms of high degree apart.
         let chebyshev = |degree: usize, at: f64| (degree as f64 * at.acos()).cos();
         self.terms
             .iter()

@@ -1,4 +1,4 @@
-//! A twin's predictions compared with the measurement, press by press.
+//! Predictions of a twin compared with measurements, press by press.
 
 use std::collections::BTreeSet;
 
@@ -13,25 +13,25 @@ use crate::{DigitacError, Features, PairedPress, Twin, Variant};
 pub struct PressEvaluation {
     /// Name of the press in its recording.
     pub name: String,
-    /// The mounting of the indenter that it belongs to.
+    /// The installation (mounting) of the indenter that it belongs to.
     #[serde(rename = "file")]
     pub mounting: String,
     /// The indenter's name.
     pub indenter: String,
-    /// Place in the gel's plane, mm.
+    /// Location in the gel's plane, mm.
     pub place_mm: [f64; 2],
     /// Time stamps, s.
     pub time_s: Vec<f64>,
     /// Depth below first touch, mm.
     pub depth_mm: Vec<f64>,
-    /// Readings, kPa, NaN where one is missing; `[n_frames][n_taxels]`.
+    /// Readings, kPa; NaN where one is missing; `[n_frames][n_taxels]`.
     #[serde(deserialize_with = "null_as_nan")]
     pub measured_kpa: Vec<Vec<f64>>,
     /// Predictions of the twin, kPa; `[n_frames][n_taxels]`.
     pub predicted_kpa: Vec<Vec<f64>>,
     /// Whether the reading counts; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
-    /// Largest time by which readings would have to be warped, s.
+    /// Largest time shift that a warp of the readings would need, s.
     pub largest_shift_s: f64,
     /// Errors of this press alone.
     pub errors: Errors,
@@ -46,31 +46,34 @@ pub struct Evaluation {
     pub taxels: Vec<String>,
     /// The twin's errors.
     pub twin: Score,
-    /// The same if readings are warped onto the simulation's clock before they are compared.
+    /// Errors of the twin if readings are warped onto the simulation's clock before they are
+    /// compared.
     pub warped: Errors,
     /// Errors of predicting zero.
     pub zero: Score,
     /// Errors of a polynomial in depth and position, if one was fitted.
     pub polynomial: Option<Score>,
-    /// Errors of a power of depth times a function of distance, if one was fitted.
+    /// Errors of the parametric baseline (a power of depth times a function of distance), if it was
+    /// fitted.
     #[serde(default)]
     pub kernel: Option<Score>,
     /// The presses.
     pub presses: Vec<PressEvaluation>,
 }
 
-/// Curves without physics that a twin is compared with.
+/// Baselines without physics for comparison with a twin.
 pub struct Baselines {
     polynomial: StaticPolynomial,
     kernel: Kernel,
 }
 
 impl Baselines {
-    /// Fits teachers among recorded presses. `ports_mm` are the ports' places in the gel's plane, `[n_taxels]`; taxels in `left_out` do not
-    /// pull at what all share.
+    /// Fits the baselines to training presses among recorded ones. `ports_mm` are the ports'
+    /// locations in the gel's plane, `[n_taxels]`. Excluded taxels, in `left_out`, do not influence
+    /// values that all taxels share.
     ///
     /// # Errors
-    /// None that a recording causes.
+    /// No recording causes an error.
     pub fn fit(
         recorded: &[PairedPress],
         teachers: &[usize],
@@ -85,8 +88,8 @@ impl Baselines {
     }
 }
 
-/// Evaluates a twin on some presses of a recording, all of which the gel remembers. The baselines should have been fitted to the twin's
-/// training presses.
+/// Evaluates a twin on some presses of a recording; relaxation after the other presses is taken
+/// into account. The baselines should have been fitted to the twin's training presses.
 #[must_use]
 pub fn evaluate(
     twin: &Twin,
@@ -130,7 +133,7 @@ pub fn evaluate(
     }
 }
 
-/// What a twin says of some presses of a recording, kPa; `[n_chosen][n_frames][n_taxels]`.
+/// Predictions of a twin for some presses of a recording, kPa; `[n_chosen][n_frames][n_taxels]`.
 pub(crate) fn predict_some(twin: &Twin, recorded: &[PairedPress], chosen: &[usize]) -> Vec<Vec<Vec<f64>>> {
     let all: Vec<&Features> = recorded.iter().map(|press| &press.features).collect();
     let mut predictions = twin.predict(&all);

@@ -1,7 +1,8 @@
-//! A baseline that is a curve: a power of depth times a smooth function of distance, and barometers as the twin has them.
+//! The parametric baseline: a curve that is a power of depth times a smooth function of distance,
+//! with the same model of barometers as the twin.
 //!
-//! It knows no gel, no shape and no neighbours. What a twin of finite elements is worth on presses of one indenter is how far it is below
-//! this.
+//! It knows no gel, no shape and no neighbouring taxels. On presses of one indenter, the benefit of
+//! the finite elements is the difference between the errors of this baseline and of a twin.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -12,17 +13,19 @@ use crate::numerics::{Unknown, mirrored_splines};
 use crate::physical_fit::{BarometerModel, Elastic, Fitted, Pressures, Series, Slope, fit};
 use crate::{DigitacError, Features, Gains, PairedPress};
 
-/// Intervals of the function of distance, from a port to half the largest distance that was pressed.
+/// Number of intervals of the function of distance, from a port to half the largest distance of a
+/// press.
 const N_INTERVALS: usize = 8;
-/// Coefficients of its cubic B-spline, whose slope is zero at the port.
+/// Number of coefficients of its cubic B-spline, whose slope is zero at the port.
 const N_COEFFICIENTS: usize = N_INTERVALS + 2;
-/// Power of depth at first, and within which it is looked for.
+/// Initial, smallest and largest power of depth.
 const POWER: [f64; 3] = [1.5, 0.5, 4.0];
-/// How far contact heights may differ from those of the twin, mm.
+/// Largest difference of contact heights from those of the twin, mm.
 const OFFSET_LIMIT_MM: f64 = 0.4;
-/// Smallest depth, mm, or force, N, that counts.
+/// Smallest depth, mm, or force, N, that counts as contact.
 const SMALLEST: f64 = 1e-6;
-/// Pull of all unknowns to their start: it settles what gains and coefficients share.
+/// Regularization of all unknowns towards their start. It fixes the common factor of gains and
+/// coefficients.
 const PULL: f64 = 1e-6;
 
 /// One curve for each indenter.
@@ -36,7 +39,7 @@ struct Fit {
     gains: Gains,
 }
 
-/// What a curve needs to know of the bench.
+/// What a curve needs to know of the test setup.
 #[derive(Clone)]
 struct Curve {
     ports_mm: Vec<[f64; 2]>,
@@ -45,7 +48,8 @@ struct Curve {
 }
 
 impl Kernel {
-    /// Fits teachers among recorded presses. `ports_mm` are the ports' places in the gel's plane; `[n_taxels]`.
+    /// Fits training presses among recorded ones. `ports_mm` are the ports' locations in the gel's
+    /// plane; `[n_taxels]`.
     pub(crate) fn fit(
         recorded: &[PairedPress],
         teachers: &[usize],
@@ -68,7 +72,8 @@ impl Kernel {
         })
     }
 
-    /// Readings of a press from rest, kPa; `[n_frames][n_taxels]`. Zeros for an indenter that was not fitted.
+    /// Predicted readings of a press from rest, kPa; `[n_frames][n_taxels]`. Zeros for an indenter
+    /// that was not fitted.
     #[must_use]
     pub(crate) fn predict(&self, press: &PairedPress) -> Vec<Vec<f64>> {
         let Some(fit) = self.by_indenter.get(&press.indenter) else {
@@ -146,12 +151,13 @@ impl Fit {
 struct TaxelCurve {
     kpa: Vec<f64>,
     by_offset: Vec<f64>,
-    /// By the power, by its growth with distance, and by the coefficients.
+    /// Derivatives with respect to the power, its growth with distance, and the coefficients.
     by_shape: Vec<Vec<f64>>,
 }
 
 impl Curve {
-    /// Unknowns after the offsets: the power, its growth over the reach, and the coefficients.
+    /// Number of unknowns after the offsets: the power, its growth over the reach, and the
+    /// coefficients.
     fn n_shape(&self) -> usize {
         2 + N_COEFFICIENTS
     }

@@ -1,4 +1,4 @@
-//! The errors of predictions, in percent of the largest reading.
+//! Errors of predictions, in % of the largest reading.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,20 +6,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::PairedPress;
 
-/// The definition that goes with every score.
+/// The definition that is stored with every score.
 pub(crate) const DEFINITION: &str = "Errors are mean absolute differences between predicted and measured readings over the largest \
     reading of the same file, in percent. 'Nearest, in contact' (the headline) takes, of the frames with depth > 0 whose largest \
     reading exceeds 3 % of the file's largest, the taxel with the largest reading. 'All' takes every taxel in every frame. 'Peak' \
     compares, press by press, the largest reading of the press with the largest prediction of the same taxel. Taxels left out count in \
     neither; frames nearest to one are left out of the headline. Readings are compared on the recording's own clock, and every usable one counts.";
 
-/// Frames whose largest reading is below this fraction of the file's largest are not in contact.
+/// Frames whose largest reading is below this fraction of the file's largest do not count as
+/// contact.
 const CONTACT_FRACTION: f64 = 0.03;
 
-/// Largest reading of each file, kPa, from all its presses, whether they are scored or not.
+/// Largest reading of each file, kPa, from all its presses, scored or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scale {
-    /// Taxels that are left out of the headline, by index.
+    /// Taxels that are excluded from the headline, by index.
     pub left_out: BTreeSet<usize>,
     /// Largest reading of each file, kPa.
     pub largest_kpa: BTreeMap<String, f64>,
@@ -47,40 +48,42 @@ impl Scale {
     }
 }
 
-/// A mean and what it is the mean of, %.
+/// A mean, %, and the number of its values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mean {
     /// The mean, %; `None` if nothing was counted.
     pub percent: Option<f64>,
-    /// How many values.
+    /// Number of values.
     pub count: usize,
 }
 
 /// Errors of some presses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// Nearest taxel, frames in contact: the headline.
+    /// Mean absolute error of the nearest taxel, in frames in contact: the headline.
     pub nearest_in_contact: Mean,
-    /// All taxels, all frames.
+    /// Mean absolute error of all taxels, in all frames.
     pub all: Mean,
-    /// Largest reading of each press.
+    /// Mean absolute error of the largest reading of each press.
     pub peak: Mean,
 }
 
 /// Errors of presses, in total and by file and taxel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Score {
-    /// What the numbers mean.
+    /// Definition of the figures.
     pub definition: String,
     /// All presses.
     pub overall: Errors,
-    /// By file.
+    /// Errors by file.
     pub by_file: BTreeMap<String, Errors>,
-    /// By taxel, left out or not; its headline takes the frames to which it is the nearest; `[n_taxels]`.
+    /// Errors by taxel, excluded or not; `[n_taxels]`. A taxel's headline uses the frames in which
+    /// it is the nearest.
     pub by_taxel: Vec<Errors>,
-    /// Frames deeper than the simulation went, which are scored all the same: what it ends with stands for them, straight on.
+    /// Number of frames deeper than the simulation. They are scored all the same, with the last
+    /// simulated pressures.
     pub n_frames_not_simulated: usize,
-    /// All frames.
+    /// Number of all frames.
     #[serde(default)]
     pub n_frames: usize,
 }
@@ -229,8 +232,8 @@ mod tests {
 
     #[test]
     fn the_headline_takes_the_nearest_taxel_in_contact_only() {
-        // Above the gel; touching, but below 3 %; and twice in contact, nearest to one taxel and to the
-        // other.
+        // Above the gel; touching, but below 3 %; and twice in contact, where each of the two
+        // taxels is once the nearest.
         let frames = [
             (-1.0, [9.0, 0.0]),
             (0.1, [2.9, 0.0]),
@@ -277,7 +280,7 @@ mod tests {
         let score = score([&press], &[vec![vec![1.0, 1.0]]], &scale);
         assert_eq!(score.overall, Errors::default());
         assert_eq!(score.overall.all.percent, None);
-        // In the air all the time: there are readings, but none in contact.
+        // A press that never touches the gel has readings, but no frame in contact.
         let press = by_hand("a", "file", [0.0, 0.0], &[(-1.0, [5.0, 1.0]), (-2.0, [2.0, 1.0])]);
         let scale = Scale::of([&press], BTreeSet::new());
         let found = super::score([&press], &[vec![vec![5.0, 1.0]; 2]], &scale).overall;

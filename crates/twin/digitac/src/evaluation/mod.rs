@@ -1,4 +1,4 @@
-//! The errors of a twin, those of the baselines it is compared with, and how well measured presses repeat.
+//! Errors of a twin and of the baselines, and the repeatability of measured presses.
 
 mod baseline;
 mod evaluate;

@@ -1,9 +1,12 @@
 //! The contact height of a new recording.
 //!
-//! Contact heights differ from one mounting to the next by some hundredths of a millimetre. This changes readings by some percent, and no
-//! model can predict it. So the contact height of a file that the bench was not fitted to is fitted to its first presses, with the trained
-//! twin unchanged, by its physical part alone (a perceptron may take a wrong height for something it has learned to correct), and by a rule that is fixed beforehand and looks at poses only: the first three that the twin would feel at least half as
-//! much as the most. These presses are not scored.
+//! Contact heights differ from one installation of an indenter to the next by some hundredths of a
+//! millimetre. This changes readings by some percent, and no model can predict it. For a file that
+//! the test setup was not fitted to, the contact height is therefore fitted to its first presses,
+//! with the trained twin unchanged. Only the physical part of the twin is used, because a
+//! perceptron may compensate a wrong height. The presses are selected by a rule that is fixed
+//! beforehand and uses poses only: the first three whose largest predicted reading is at least half
+//! of the largest of the file. These presses are not scored.
 
 use std::collections::BTreeSet;
 
@@ -16,11 +19,12 @@ use crate::features::Sample;
 use crate::numerics::minimize;
 use crate::{DigitacError, Features, Twin};
 
-/// Presses of a file that its contact height is fitted to.
+/// Number of presses to which a file's contact height is fitted.
 const N_PRESSES: usize = 3;
-/// They are felt at least this much of what the most felt one of the file is, as the twin says.
+/// Smallest ratio of their largest predicted reading to that of the file.
 const FELT: f64 = 0.5;
-/// A press that would put the contact farther from the file's than this is worth a warning, mm.
+/// A press is worth a warning if its own contact height differs from that of the file by more than
+/// this, mm.
 const SUSPICIOUS_MM: f64 = 0.08;
 /// Tolerance of heights, mm.
 const TOLERANCE_MM: f64 = 2e-3;
@@ -30,17 +34,19 @@ const TOLERANCE_MM: f64 = 2e-3;
 pub struct Recalibration {
     /// The file.
     pub file: String,
-    /// By how much the tip is deeper than the file says, mm; the uncertainty is what the presses disagree by.
+    /// True minus recorded depth of the tip, mm. Its uncertainty is the disagreement of the
+    /// presses.
     pub contact_offset_mm: Estimate,
-    /// The presses it was fitted to, by number: not to be scored.
+    /// The presses that it was fitted to, by number. They must not be scored.
     pub used: Vec<usize>,
-    /// Presses whose own height is far from the file's.
+    /// Warnings about presses whose own height differs much from that of the file.
     pub doubts: Vec<String>,
 }
 
-/// Fits the contact height of a file to three of its presses by least absolute deviations from the twin,
-/// within `limit_mm` of the bench's median. Taxels in `left_out` do not count. `None` if the file has no
-/// presses of prescribed pose, or too few presses, or none that the twin would feel.
+/// Fits the contact height of a file to three of its presses by least absolute deviations from the
+/// twin, within `limit_mm` of the median of the test setup. Excluded taxels, in `left_out`, do not
+/// count. `None` if the file has no presses of prescribed pose, too few presses, or none with a
+/// predicted reading.
 pub fn recalibrate(
     recording: &Recording,
     (places, tables): (&Places, &[DepthTable]),
@@ -113,7 +119,7 @@ pub fn recalibrate(
         .map(|(&press, own)| {
             let name = &recording.presses[press].name;
             format!(
-                "press {name} touches {:.2} mm deeper than its file says, the others {value:.2} mm",
+                "press {name} touches {:.2} mm deeper than recorded, the others {value:.2} mm",
                 own
             )
         })
@@ -130,7 +136,8 @@ pub fn recalibrate(
     }))
 }
 
-/// The first presses that a twin would feel at least half as much as the most; poses alone decide.
+/// The first presses whose largest predicted reading is at least half of the largest; only poses
+/// decide.
 fn felt(
     presses: &[usize],
     along: &dyn Fn(usize) -> Result<Features, DigitacError>,

@@ -1,4 +1,5 @@
-//! How well measured presses repeat: what two presses of the same place, depth and speed differ by.
+//! Repeatability of measured presses: the difference between two presses of the same location,
+//! depth and speed.
 
 use std::ops::Range;
 
@@ -7,35 +8,35 @@ use serde::{Deserialize, Serialize};
 use super::{Errors, Scale, score};
 use crate::{Features, PairedPress};
 
-/// The definition that goes with the numbers.
+/// The definition that is stored with the figures.
 const DEFINITION: &str = "Two presses of one indenter at one place (within 0.05 mm), to one depth (within 0.05 mm) and at one speed (within 10 %) \
     are compared phase by phase: going down and coming up at the same depth, holding at the same time after the end of the way down, coming up \
     only after holds of one length (within 10 % or 0.2 s). Errors are those of taking one's readings for the other's; a twin that predicts the mean of \
     both has half of them.";
 
-/// Places closer than this are one, mm.
+/// Locations closer than this count as equal, mm.
 const SAME_PLACE_MM: f64 = 0.05;
-/// Depths closer than this are one, mm.
+/// Depths closer than this count as equal, mm.
 const SAME_DEPTH_MM: f64 = 0.05;
-/// Speeds and durations whose ratio is closer to one than this are one.
+/// Speeds and durations count as equal if their ratio is closer to one than this.
 const SAME_RATIO: f64 = 0.1;
-/// Holds that differ by less are of one length, s.
+/// Durations of holds that differ by less count as equal, s.
 const SAME_HOLD_S: f64 = 0.2;
-/// A hold begins and ends where the depth is this close to the deepest, mm.
+/// A hold has the depths this close to the deepest, mm.
 const HOLD_MM: f64 = 0.02;
 
-/// How well presses repeat.
+/// Repeatability of presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Repeatability {
-    /// What the numbers mean.
+    /// Definition of the figures.
     pub definition: String,
-    /// Pairs of presses that repeat each other.
+    /// Number of pairs of presses that repeat each other.
     pub n_pairs: usize,
-    /// Errors of predicting one press's readings by the other's.
+    /// Errors of predicting the readings of one press by those of the other.
     pub errors: Errors,
 }
 
-/// Compares all presses that repeat each other. `None` if none do.
+/// Compares all presses that repeat each other; `None` if there are none.
 #[must_use]
 pub fn repeatability(presses: &[PairedPress], scale: &Scale) -> Option<Repeatability> {
     let mut compared = Vec::new();
@@ -60,19 +61,19 @@ pub fn repeatability(presses: &[PairedPress], scale: &Scale) -> Option<Repeatabi
     })
 }
 
-/// Frames of one way down, one hold and one way up.
+/// Frames of loading, hold and unloading.
 struct Phases {
     down: Range<usize>,
     hold: Range<usize>,
     up: Range<usize>,
     deepest_mm: f64,
-    /// Of the way down, from first touch.
+    /// Duration of loading from first touch, s.
     down_s: f64,
     hold_s: f64,
 }
 
 impl Phases {
-    /// `None` if the gel is not touched on the way down.
+    /// `None` if the gel is not touched during loading.
     fn of(features: &Features) -> Option<Self> {
         let depth_mm = &features.depth_mm;
         let deepest_mm = depth_mm.iter().copied().fold(0.0, f64::max);
@@ -95,7 +96,8 @@ impl Phases {
     }
 }
 
-/// The first press where both are in the same phase, and the second's readings at its frames.
+/// The frames of the first press in which both are in the same phase, and the readings of the
+/// second press at these frames.
 fn compare(first: &PairedPress, second: &PairedPress) -> Option<(PairedPress, Vec<Vec<f64>>)> {
     let (f, g) = (&first.features, &second.features);
     let (a, b) = (Phases::of(f)?, Phases::of(g)?);
@@ -145,7 +147,7 @@ fn compare(first: &PairedPress, second: &PairedPress) -> Option<(PairedPress, Ve
     (!frames.is_empty()).then_some((common, other))
 }
 
-/// The index, between the frames of a phase, at which rising values come to one.
+/// The fractional index, among the frames of a phase, at which rising values reach `at`.
 fn index_at(values: &[f64], phase: &Range<usize>, at: f64) -> Option<f64> {
     let after = phase.clone().find(|&i| values[i] >= at)?;
     let before = after.checked_sub(1).filter(|before| phase.contains(before));
@@ -162,7 +164,7 @@ mod tests {
     use super::*;
     use crate::synthetic::by_hand;
 
-    /// Down at 1 mm/s from 0.5 mm above, a hold, and up; readings proportional to the depth.
+    /// Down at 1 mm/s from 0.5 mm above, a hold, and up; readings are proportional to the depth.
     fn press(place_mm: f64, deepest_mm: f64, hold_s: f64, late_s: f64, gain: f64) -> PairedPress {
         let up_s = 0.5 + deepest_mm + hold_s + late_s;
         let depth = |i: i32| {
@@ -186,7 +188,7 @@ mod tests {
         let scale = Scale::of(&presses[..1], BTreeSet::new());
         let found = repeatability(&presses, &scale).unwrap();
         assert_eq!(found.n_pairs, 1);
-        // Two percent of the reading, which itself grows up to the largest and falls again.
+        // Two percent of the reading, which itself rises to the largest and falls again.
         let percent = found.errors.nearest_in_contact.percent.unwrap();
         assert!((1.0..1.6).contains(&percent), "{found:?}");
         assert!(found.errors.nearest_in_contact.count > 40, "{found:?}");

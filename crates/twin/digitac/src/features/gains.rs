@@ -1,4 +1,4 @@
-//! What each barometer makes of the pressure at its port.
+//! The response of each barometer to the pressure at its port.
 
 use std::collections::BTreeSet;
 
@@ -7,12 +7,13 @@ use twintac_config::Ranges;
 
 use super::{Features, overstress, port_law};
 
-/// Readings of barometers, taxel by taxel: the port law of gain × pressure, and a memory of it.
+/// Response of barometers, taxel by taxel: gain × pressure, a static nonlinearity (port law), and
+/// viscoelastic relaxation (memory).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gains {
-    /// Reading over port pressure of the relaxed gel, for small pressures; `[n_taxels]`.
+    /// Ratio of reading to port pressure of the relaxed gel, for small pressures; `[n_taxels]`.
     pub gain: Vec<f64>,
-    /// By how much a reading grows beyond proportion, for each kPa of it; `[n_taxels]`.
+    /// Relative growth of a reading beyond proportionality, per kPa of the reading; `[n_taxels]`.
     pub stiffening_per_kpa: Vec<f64>,
     /// Share of each time constant's overstress in the reading; `[n_taxels][n_time_constants]`.
     pub memory: Vec<Vec<f64>>,
@@ -20,19 +21,20 @@ pub struct Gains {
     pub time_constants_s: Vec<f64>,
 }
 
-/// Time constants that fits start from, s: two are enough for barometers cast into rubber, one while the load
-/// moves and one in a hold.
+/// Initial time constants of fits, s. Two are enough for barometers cast into rubber: one while the
+/// load moves, and one in a hold.
 pub(crate) const TIME_CONSTANTS_S: [f64; 2] = [0.25, 4.0];
 
-/// The largest pressure that can be, kPa: that of a kilometre of granite is a fortieth of it.
+/// The largest pressure that is accepted, kPa: forty times the pressure under a kilometre of
+/// granite.
 const LARGEST_KPA: f64 = 1e6;
 
-/// Whether a number can be a pressure or a reading, kPa: finite, and not larger than anything.
+/// Whether a number can be a pressure or a reading, kPa: finite and within the accepted range.
 pub(crate) fn is_pressure(kpa: f64) -> bool {
     kpa.abs() <= LARGEST_KPA
 }
 
-/// What time constants may be: longer ones are drift, shorter ones nobody samples.
+/// Range of time constants. Longer ones are drift, and shorter ones are below any sampling period.
 pub(crate) fn check_time_constants(ranges: &mut Ranges, time_constants_s: &[f64]) {
     ranges.numbers("time_constants_s", time_constants_s, 4, 1e-3..=1e4);
 }
@@ -55,16 +57,17 @@ impl Sample<'_> {
     }
 }
 
-/// What the barometers of one or more sensors remember from one frame to the next. The arrays of all sensors lie side by side.
+/// State of relaxation of the barometers of one or more sensors, from one frame to the next. The
+/// arrays of all sensors are next to each other.
 #[derive(Clone, Debug)]
 pub(crate) struct Remembered {
-    /// Whether the gel has rested until the next frame; `[n_sensors]`.
+    /// Whether the gel rests until the next frame; `[n_sensors]`.
     rested: Vec<bool>,
     /// Readings of the relaxed gel at the last frame, kPa; `[n_sensors * n_taxels]`.
     relaxed_kpa: Vec<f64>,
     /// Overstresses, kPa; `[n_time_constants * n_sensors * n_taxels]`.
     overstress_kpa: Vec<f64>,
-    /// Share of each overstress in the reading, in one piece; `[n_time_constants * n_taxels]`.
+    /// Share of each overstress in the reading, in one array; `[n_time_constants * n_taxels]`.
     shares: Vec<f64>,
 }
 
@@ -91,7 +94,7 @@ impl Remembered {
         }
     }
 
-    /// What one sensor remembers, and nothing of the others.
+    /// The state of one sensor alone.
     pub(crate) fn of_sensor(&self, sensor: usize) -> Self {
         let own = self.taxels(sensor);
         let overstresses = self.overstress_kpa.chunks_exact(self.relaxed_kpa.len().max(1));
@@ -105,7 +108,7 @@ impl Remembered {
         }
     }
 
-    /// Lets one sensor remember what another one of the same twin does, alone.
+    /// Replaces the state of one sensor by that of a single sensor of the same twin.
     pub(crate) fn set_sensor(&mut self, sensor: usize, of_one: &Self) {
         let (own, n_readings) = (self.taxels(sensor), self.relaxed_kpa.len().max(1));
         assert_eq!(
@@ -128,9 +131,10 @@ impl Remembered {
 }
 
 impl Gains {
-    /// One more frame of each sensor: turns gain × pressure of each taxel into readings, kPa; `[n_sensors * n_taxels]`. `since_s` is the
-    /// time since the last frame, of which sensors whose gel has rested until now take no notice. What is not a pressure ([`is_pressure`]) is read as NaN, and the gel
-    /// remembers the frame before in its place.
+    /// One more frame of each sensor: turns gain × pressure of each taxel into readings, kPa;
+    /// `[n_sensors * n_taxels]`. `since_s` is the time since the last frame; sensors whose gel has
+    /// rested until now ignore it. A value that is not a pressure ([`is_pressure`]) is read as NaN,
+    /// and the state keeps the previous frame in its place.
     pub(crate) fn step(&self, remembered: &mut Remembered, since_s: f64, readings_kpa: &mut [f64]) {
         let n_taxels = self.gain.len().max(1);
         for row in readings_kpa.chunks_exact_mut(n_taxels) {
@@ -178,8 +182,9 @@ impl Gains {
         }
     }
 
-    /// Readings along presses that follow each other, from gain × pressure, kPa; `[n_presses][n_frames][n_taxels]`. Readings are zero, in
-    /// the mean, over the frames over which the measured ones were set to zero.
+    /// Readings along presses that follow each other, from gain × pressure, kPa;
+    /// `[n_presses][n_frames][n_taxels]`. Their mean is zero over the frames over which the
+    /// measured readings were set to zero.
     pub(crate) fn remember(
         &self,
         presses: &[&Features],
@@ -196,7 +201,8 @@ impl Gains {
         })
     }
 
-    /// The reading that these gains alone give along presses that follow each other, kPa; `[n_presses][n_frames][n_taxels]`.
+    /// Readings along presses that follow each other, from these gains alone, kPa;
+    /// `[n_presses][n_frames][n_taxels]`.
     #[must_use]
     pub fn readings_kpa(&self, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
         let elastic = |press: &&Features| -> Vec<Vec<f64>> {
@@ -208,8 +214,9 @@ impl Gains {
     }
 }
 
-/// Readings along presses that follow each other, kPa; `[n_presses][n_frames][n_taxels]`. `step` makes a row of them: it is given the numbers
-/// of press and frame, and the time since the last frame, `None` if the gel has rested until now.
+/// Readings along presses that follow each other, kPa; `[n_presses][n_frames][n_taxels]`. `step`
+/// computes a row of them from the indices of press and frame and the time since the last frame,
+/// `None` if the gel has rested until now.
 pub(crate) fn along(
     presses: &[&Features],
     mut step: impl FnMut(usize, usize, Option<f64>) -> Vec<f64>,
@@ -228,7 +235,8 @@ pub(crate) fn along(
     presses.iter().enumerate().map(frames_of).collect()
 }
 
-/// Takes the mean over some frames from all; `[n_frames][n_taxels]`. The mean of frames that are alike is what they are, to the last bit.
+/// Subtracts the mean over some frames from all frames; `[n_frames][n_taxels]`. The mean of equal
+/// frames has exactly their bits.
 fn set_to_zero(rows: &mut [Vec<f64>], zero_frames: std::ops::Range<usize>) {
     if zero_frames.is_empty() {
         return;

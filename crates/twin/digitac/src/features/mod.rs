@@ -1,4 +1,5 @@
-//! The inputs of the twin: the simulated gel along a press, and the reading of each barometer that follows from it.
+//! Inputs of the twin: the simulated gel along a press, and the reading of each barometer that
+//! follows from it.
 
 mod gains;
 mod overstress;

@@ -1,11 +1,13 @@
-//! The memory of a reading: overstresses that follow each change of the elastic reading and fade (quasi-linear viscoelasticity).
+//! Viscoelastic relaxation of a reading: overstresses that follow each change of the elastic
+//! reading and fade (quasi-linear viscoelasticity).
 //!
-//! With the elastic reading r(t) each time constant τ carries dq/dt = dr/dt - q/τ, and a barometer reads r +
-//! Σ c q (a generalized Maxwell solid, Simo and Hughes, Computational Inelasticity, section 10.3). A memory
-//! of this form is linear, stable and fading, so it cannot learn the sequence of presses by heart.
+//! With the elastic reading r(t), each time constant τ has dq/dt = dr/dt - q/τ, and a barometer
+//! reads r + Σ c q (a generalized Maxwell solid, Simo and Hughes, Computational Inelasticity,
+//! section 10.3). A relaxation of this form is linear, stable and fading, so it cannot overfit the
+//! sequence of presses.
 
-/// Shares of the old overstress that stay, and of the change that arrives, over a time step on which r
-/// changes linearly (exact).
+/// The remaining share of the old overstress, and the share of a change that becomes overstress,
+/// over a time step in which r changes linearly (exact).
 pub(crate) fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
     let ratio = duration_s / time_constant_s;
     let kept = (-ratio).exp();
@@ -17,7 +19,7 @@ pub(crate) fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
     (kept, arrived)
 }
 
-/// The overstress of each frame, starting from none; `[n_frames]`.
+/// The overstress of each frame, from zero; `[n_frames]`.
 #[cfg(test)]
 fn of(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f64> {
     let mut q = vec![0.0; elastic.len()];
@@ -28,8 +30,8 @@ fn of(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f64> {
     q
 }
 
-/// The overstresses of a press from rest as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames
-/// + j]` × elastic reading j.
+/// The overstresses of a press from rest as a matrix, row by row: the overstress of frame i is Σ
+/// over j of `matrix[i * n_frames + j]` × elastic reading j.
 pub(crate) fn matrix(time_s: &[f64], time_constant_s: f64) -> Vec<f64> {
     let n = time_s.len();
     let mut matrix = vec![0.0; n * n];

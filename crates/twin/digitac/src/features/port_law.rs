@@ -1,8 +1,10 @@
-//! What a port makes of the pressure in the gel before it: proportional while small, then steeper or flatter.
+//! Static nonlinearity of a port: its reading is proportional to small pressures in the gel, then
+//! steeper or flatter.
 //!
-//! A port that holds a bubble of air, or that the gel fills only under load, reads more of a large pressure than of a small one. With the
-//! elastic reading e = gain × pressure the port reads e (1 + s e) for s ≥ 0 and e / (1 - s e) for s < 0, which never falls. Tension is read
-//! in proportion.
+//! A port that holds a bubble of air, or that the gel fills only under load, reads a larger
+//! fraction of a large pressure than of a small one. With the elastic reading e = gain × pressure,
+//! the port reads e (1 + s e) for s ≥ 0 and e / (1 - s e) for s < 0, which never falls. Tension is
+//! read proportionally.
 
 /// The reading, in the unit of `elastic`.
 pub(crate) fn reading(stiffening: f64, elastic: f64) -> f64 {
@@ -15,7 +17,7 @@ pub(crate) fn reading(stiffening: f64, elastic: f64) -> f64 {
     }
 }
 
-/// Derivatives of the reading by the elastic reading and by the stiffening.
+/// Derivatives of the reading with respect to the elastic reading and to the stiffening.
 pub(crate) fn slopes(stiffening: f64, elastic: f64) -> [f64; 2] {
     if elastic <= 0.0 {
         [1.0, 0.0]

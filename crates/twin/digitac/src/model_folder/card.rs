@@ -1,4 +1,4 @@
-//! The card of a model: what people should know before they use it.
+//! The card of a model: what users should know before they use it.
 
 use twintac_text::markdown;
 
@@ -14,7 +14,7 @@ pub(super) fn card(model: &Model) -> String {
             "a perceptron on the mean of von Mises stress over distance, of a cluster of surface nodes for each taxel (arXiv 2509.10063)"
         }
         _ => {
-            "the gel's pressure at each port times a gain, with the port's own law and memory, and what a small perceptron adds to it where the name ends in `mlp`"
+            "the gel's pressure at each port times a gain, with the static nonlinearity and the viscoelastic relaxation of each taxel; if the name ends in `mlp`, a small perceptron adds a correction"
         }
     };
     let split = &record.split;
@@ -24,23 +24,23 @@ pub(super) fn card(model: &Model) -> String {
         .test
         .as_ref()
         .map_or(String::new(), |score| row("test", split.test.len(), score));
-    // An adapted twin has no presses between those that taught it and those that judge.
+    // An adapted twin has no validation presses between its training and its test presses.
     let validation = match split.validation.len() {
         0 => row("adapted with", split.train.len(), &record.validation),
         n_presses => row("validation", n_presses, &record.validation),
     };
     let mut text = format!(
         "# A twin of {n_taxels} barometers\n\n\
-         It says what the barometers would read, from what a finite-element gel shows when it is pressed. Learned from `{provenance}` recordings; what it \
-         says is `simulated`.\n\n\
+         It predicts the readings of the barometers from a finite-element simulation of the pressed gel. It was trained on `{provenance}` recordings; its \
+         output is `simulated`.\n\n\
          - Model `{}`: {what}.\n\
-         - Taught by {} presses of {}.\n\
+         - Trained on {} presses of {}.\n\
          - Taxels, in the order of every row: {}.\n\n\
-         | presses | how many | nearest taxel in contact, % | all taxels, % | peak, % |\n|---|---|---|---|---|\n{}{test}\n\
+         | presses | number | nearest taxel in contact, % | all taxels, % | peak, % |\n|---|---|---|---|---|\n{}{test}\n\
          {}\n\n\
-         ## Where it holds\n\n\
-         For the sensor whose recordings taught it, with shapes, depths and speeds like theirs. The indenter touches {offset_mm:+.2} mm deeper than its recorded \
-         height says. Beyond the depths that taught it nothing was checked.\n",
+         ## Validity\n\n\
+         The twin is valid for the sensor of its training presses, with similar shapes, depths and speeds. The indenter touches the gel {offset_mm:+.2} mm deeper \
+         than its recorded height. Depths beyond those of the training presses were not checked.\n",
         record.variant,
         split.train.len(),
         markdown(&record.files.join(", ")),
@@ -53,12 +53,15 @@ pub(super) fn card(model: &Model) -> String {
             .doubts
             .iter()
             .map(|doubt| format!("- {}\n", markdown(doubt)));
-        text.push_str(&format!("\nDoubts of the fit:\n\n{}", doubts.collect::<String>()));
+        text.push_str(&format!(
+            "\nWarnings of the fit:\n\n{}",
+            doubts.collect::<String>()
+        ));
     }
     text.push_str(
         "\n## How to use it\n\n\
-         `twintac predict --model DIR --path FILE` prints what it reads along a press. `twin.json` has the sensor's description, the settings of simulation and \
-         training, and all that was found about the bench; `checksums.json` the SHA-256 of the files. The weights, in Python:\n\n\
+         `twintac predict --model DIR --path FILE` prints its readings along a path. `twin.json` has the sensor's description, the settings of simulation and \
+         training, and the setup calibration; `checksums.json` has the SHA-256 of the files. The weights, in Python:\n\n\
          ```python\n\
          import json\n\
          from safetensors.numpy import load_file\n\n\

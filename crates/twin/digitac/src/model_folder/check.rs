@@ -1,4 +1,5 @@
-//! Whether a model's record can be used: every number finite and of a size that can be, every list as long as there are taxels.
+//! Whether a model's record can be used: every number is finite and within a plausible range, and
+//! every list has one value for each taxel.
 
 use twintac_config::{Checked, Ranges};
 
@@ -9,11 +10,12 @@ use crate::network::Normalization;
 use crate::training::{MOST_LAYERS, MOST_WIDTH};
 use crate::{BenchEstimate, Estimate, Gains, PortEstimate, SmoothFactor};
 
-/// Taxels of a sensor at most.
+/// Largest number of taxels of a sensor.
 const MOST_TAXELS: usize = 10_000;
-/// Coefficients, gains and growths: far beyond all that was ever learned, and far from where products of them overflow.
+/// Largest coefficient, gain or growth: far beyond learned values, and far from overflow in
+/// products.
 const COEFFICIENT: f64 = 1e6;
-/// What has to be above zero to be divided by.
+/// Smallest value of numbers that are divided by.
 const SMALLEST: f64 = 1e-30;
 
 impl Checked for ModelRecord {
@@ -36,7 +38,7 @@ impl Checked for ModelRecord {
     }
 }
 
-/// A part of the record of a sensor with so many taxels.
+/// A part of the record, with the number of taxels of its sensor.
 struct Of<'a, T>(&'a T, usize);
 
 fn count<T>(ranges: &mut Ranges, field: &str, values: &[T], expected: usize, of: &str) {

@@ -1,4 +1,5 @@
-//! A model's folder: `weights.safetensors`, `twin.json`, `CARD.md` for people, the surfaces (STL) that the sensor description names, and `checksums.json` with the SHA-256 of all.
+//! A model's folder: `weights.safetensors`, `twin.json`, `CARD.md` for readers, the surfaces (STL)
+//! that the sensor description names, and `checksums.json` with the SHA-256 of all files.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,7 +20,7 @@ const WEIGHTS: &str = "weights.safetensors";
 const RECORD: &str = "twin.json";
 const CARD: &str = "CARD.md";
 const CHECKSUMS: &str = "checksums.json";
-/// Begins the names of surfaces (STL) that the sensor description names.
+/// Prefix of the file names of surfaces (STL) that the sensor description names.
 const SURFACES: &str = "surfaces/";
 /// Version of the folder's layout.
 const VERSION: u32 = 1;
@@ -28,12 +29,13 @@ const VERSION: u32 = 1;
 struct Checksums {
     format: String,
     version: u32,
-    /// Hexadecimal digits, by file name.
+    /// SHA-256 as hexadecimal digits, by file name.
     sha256: BTreeMap<String, String>,
 }
 
 impl Model {
-    /// Writes the model's folder, under a temporary name first. An older folder of that name is replaced.
+    /// Writes the model's folder, first under a temporary name. An existing folder of that name is
+    /// replaced.
     pub fn save(&self, folder: &Path) -> Result<(), DigitacError> {
         let partial = PartialFolder::create(folder)?;
         let mut checksums = Checksums {
@@ -62,7 +64,8 @@ impl Model {
     /// Reads a model's folder.
     ///
     /// # Errors
-    /// A file that is missing, altered, or of another version; numbers that cannot be, and lists that do not go with the taxels: the file and the field are named.
+    /// A file that is missing, altered, or of another version; numbers outside their ranges, and
+    /// lists whose lengths do not match the taxels. The error names the file and the field.
     pub fn load(folder: &Path) -> Result<Self, DigitacError> {
         let path = folder.join(CHECKSUMS);
         let damaged =

@@ -1,4 +1,5 @@
-//! A twin with all that is needed to use it and to know where it comes from, and the folder that keeps it.
+//! A twin with everything that is needed to use it and to know its origin, and the folder in which
+//! it is stored.
 
 mod card;
 mod check;

@@ -1,4 +1,4 @@
-//! A twin with all that is needed to use it, and to know where it comes from.
+//! A twin with everything that is needed to use it and to know its origin.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -13,55 +13,59 @@ use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainedWi
 /// A twin and its record.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Where it comes from.
+    /// The record: origin, settings and errors.
     pub record: ModelRecord,
     /// The twin itself.
     pub twin: Twin,
-    /// The surfaces (STL) that the sensor description names: names relative to the model's folder, and contents.
+    /// The surfaces (STL) that the sensor description names: names relative to the model's folder,
+    /// and contents.
     pub surfaces: BTreeMap<String, Arc<[u8]>>,
 }
 
-/// Everything about a twin but its weights.
+/// Everything about a twin except its weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelRecord {
-    /// Which model it is.
+    /// The variant of the model.
     pub variant: Variant,
     /// Names of the taxels, in the order of every row of readings.
     pub taxels: Vec<String>,
     /// The sensor description, as text.
     pub sensor: String,
-    /// Settings of the mesh and the simulation.
+    /// Settings of the mesh and of the simulation.
     pub simulation: serde_json::Value,
-    /// What was found about the bench.
+    /// Estimate of the test setup.
     pub bench: BenchEstimate,
-    /// Gains and memory as learned.
+    /// Learned gains and relaxation.
     pub gains: Gains,
     /// Settings of the training.
     pub settings: TrainedWith,
-    /// Where the training data come from.
+    /// Provenance of the training data.
     pub provenance: Provenance,
-    /// Files that the training presses were read from.
+    /// Files from which the training presses were read.
     pub files: Vec<String>,
-    /// Checksums of the presses that taught: what is judged elsewhere must not be among them.
+    /// Checksums of the training presses. Presses of another evaluation must not be among them.
     #[serde(default)]
     pub taught_by: BTreeSet<String>,
-    /// How zeros move with temperature: readings that taught were compensated for it, as far as they had temperatures.
+    /// Compensation of the zeros for temperature. The training readings were compensated, as far as
+    /// they had temperatures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature: Option<Compensation>,
-    /// Which presses were used for training, validation and test.
+    /// The presses used for training, validation and test.
     pub split: Split,
-    /// Errors on validation presses; of an adapted twin, on those that it was adapted with.
+    /// Errors on validation presses; for an adapted twin, on the presses that it was adapted with.
     pub validation: Score,
-    /// Errors on test presses at training; of an adapted twin, on those that it was not adapted with.
+    /// Errors on test presses at the time of training; for an adapted twin, on presses that it was
+    /// not adapted with.
     pub test: Option<Score>,
-    /// How sure it is of its readings; `None` of models that were made before this was found, and of adapted ones.
+    /// Intervals and OOD score; `None` for models of earlier versions without them, and for adapted
+    /// models.
     #[serde(default)]
     pub certainty: Option<Certainty>,
-    /// The initial values that the weights are stored relative to; needed to read them.
+    /// The initial values that the stored weights are relative to; needed to read them.
     pub(crate) start: Start,
 }
 
-/// The initial values that the weights are stored relative to.
+/// The initial values that the stored weights are relative to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Start {
     pub(crate) gains: Gains,
@@ -70,30 +74,30 @@ pub(crate) struct Start {
     pub(crate) hidden: Vec<usize>,
 }
 
-/// Where a model comes from: what [`Model::new`] cannot derive from the twin.
+/// Origin of a model: what [`Model::new`] cannot derive from the twin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
     /// The sensor description, as text.
     pub sensor: String,
     /// The surfaces (STL) that it names: names relative to the model's folder, and contents.
     pub surfaces: BTreeMap<String, Arc<[u8]>>,
-    /// Settings of the mesh and the simulation.
+    /// Settings of the mesh and of the simulation.
     pub simulation: serde_json::Value,
-    /// What was found about the bench.
+    /// Estimate of the test setup.
     pub bench: BenchEstimate,
     /// Settings of the training.
     pub settings: TrainedWith,
-    /// Where the training data come from.
+    /// Provenance of the training data.
     pub provenance: Provenance,
-    /// Files that the training presses were read from.
+    /// Files from which the training presses were read.
     pub files: Vec<String>,
-    /// Checksums of the presses that taught.
+    /// Checksums of the training presses.
     pub taught_by: BTreeSet<String>,
-    /// How zeros move with temperature, if it is known.
+    /// Compensation of the zeros for temperature, if it is known.
     pub temperature: Option<Compensation>,
-    /// Which presses were used for training, validation and test.
+    /// The presses used for training, validation and test.
     pub split: Split,
-    /// How sure the twin is of its readings, if it is known.
+    /// Intervals and OOD score of the twin, if they are known.
     pub certainty: Option<Certainty>,
 }
 

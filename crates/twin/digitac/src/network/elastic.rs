@@ -1,15 +1,15 @@
-//! Elastic readings, and their gradient by the parameters.
+//! Elastic readings, and their gradient with respect to the parameters.
 
 use super::perceptron::{self, PerceptronPass};
 use twintac_learn::Matrix;
 
 use super::{Parameters, Physics, Variant};
 
-/// Below this share of the largest reading, squared, the size of a frame's readings is rounded off to keep
-/// its slope finite.
+/// Added to the sum of squares of a frame's readings, in units of the largest reading, so that the
+/// slope of its square root stays finite.
 const ROUNDING: f32 = 1e-8;
 
-/// Elastic readings, and what their gradient needs.
+/// Elastic readings, and the values that their gradient needs.
 pub(crate) struct Pass {
     /// Elastic readings of order one; `[n_rows][n_taxels]`.
     pub(crate) readings: Matrix,
@@ -17,29 +17,29 @@ pub(crate) struct Pass {
     correction: Option<Correction>,
 }
 
-/// A correction that is a bounded share of the size of a row's physical readings.
+/// A correction that is limited to a fraction of the size of a row's physical readings.
 struct Correction {
-    /// The readings without it; `[n_rows][n_taxels]`.
+    /// The readings without correction; `[n_rows][n_taxels]`.
     physical: Matrix,
     /// Rounded sum of their squares; `[n_rows]`.
     squares: Vec<f32>,
-    /// Share of the size over the limit, between -1 and 1; `[n_rows][n_taxels]`.
+    /// Correction over its limit, between -1 and 1; `[n_rows][n_taxels]`.
     shares: Matrix,
 }
 
-/// Room for elastic readings of some rows, so that none has to be allocated while readings are computed.
+/// Memory for elastic readings of some rows, so that computing readings allocates none.
 #[derive(Clone, Debug)]
 pub(crate) struct ElasticRows {
     /// Inputs of order one; `[n_rows][n_taxels]`.
     inputs: Matrix,
     /// Readings of order one; `[n_rows][n_taxels]`.
     readings: Matrix,
-    /// What comes out of each layer; `[n_layers]`.
+    /// Outputs of each layer; `[n_layers]`.
     layers: Vec<Matrix>,
 }
 
 impl ElasticRows {
-    /// Room for so many rows.
+    /// Memory for this many rows.
     pub(crate) fn new(parameters: &Parameters, n_rows: usize) -> Self {
         let n_taxels = parameters.gain_change.len();
         let layers = parameters.layers.iter();
@@ -52,8 +52,9 @@ impl ElasticRows {
         }
     }
 
-    /// Elastic readings of order one from what the variant reads, with the gains of [`Parameters::elastic_gains`]: the bits of
-    /// [`Parameters::elastic`], row by row. `seen` has at most as many rows as there is room for; `[n_rows * n_taxels]`.
+    /// Elastic readings of order one from the variant's inputs, with the gains of
+    /// [`Parameters::elastic_gains`]. Each row has the same bits as from [`Parameters::elastic`].
+    /// `seen` has at most the allocated number of rows; `[n_rows * n_taxels]`.
     pub(crate) fn read(
         &mut self,
         parameters: &Parameters,
@@ -85,7 +86,7 @@ impl ElasticRows {
     }
 }
 
-/// Multiplies each column with its gain.
+/// Multiplies each column by its gain.
 fn multiply(rows: &mut Matrix, gains: &[f32]) {
     for row in rows.rows_mut() {
         row.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);
@@ -97,7 +98,7 @@ fn square(physical: &[f32]) -> f32 {
     physical.iter().map(|p| p * p).sum::<f32>() + ROUNDING
 }
 
-/// Adds the corrections to the physical readings of a row, in shares of their largest.
+/// Adds the corrections to the physical readings of a row.
 fn correct(readings: &mut [f32], square: f32, shares: &[f32], limit: f32) {
     for (reading, share) in readings.iter_mut().zip(shares) {
         *reading += square.sqrt() * share * limit;
@@ -105,13 +106,14 @@ fn correct(readings: &mut [f32], square: f32, shares: &[f32], limit: f32) {
 }
 
 impl Parameters {
-    /// Readings of order one over inputs of order one; `[n_taxels]`.
+    /// Ratio of readings of order one to inputs of order one; `[n_taxels]`.
     pub(crate) fn elastic_gains(&self, physics: &Physics) -> Vec<f32> {
         let changed = physics.start_gains().into_iter().zip(&self.gain_change);
         changed.map(|(start, change)| start * change.exp()).collect()
     }
 
-    /// Elastic readings of order one from [`Physics::inputs`]. What the perceptron sees may be noisier than what the physics sees.
+    /// Elastic readings of order one from [`Physics::inputs`]. `seen` are the inputs of the
+    /// perceptron, which may have noise.
     pub(crate) fn elastic(&self, physics: &Physics, inputs: &Matrix, seen: &Matrix) -> Pass {
         if physics.variant == Variant::Paper {
             let (readings, pass) = perceptron::forward(&self.layers, seen);
@@ -149,7 +151,8 @@ impl Parameters {
         }
     }
 
-    /// Gradient by all parameters but the memory's, from the gradient by the elastic readings.
+    /// Gradient with respect to all parameters except the memory's, from the gradient with respect
+    /// to the elastic readings.
     pub(crate) fn elastic_gradient(
         &self,
         physics: &Physics,
@@ -192,7 +195,7 @@ impl Parameters {
 }
 
 impl Correction {
-    /// Gradients by the physical readings and by the perceptron's outputs.
+    /// Gradients with respect to the physical readings and to the perceptron's outputs.
     fn gradient(&self, limit: f32, of_readings: &Matrix) -> (Matrix, Matrix) {
         let (mut of_physical, mut of_outputs) = (of_readings.clone(), of_readings.clone());
         let rows = of_physical.rows_mut().zip(of_outputs.rows_mut());

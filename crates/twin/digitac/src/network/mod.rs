@@ -1,7 +1,9 @@
-//! The learned part of a twin: which models there are, their parameters, what they read, and how that changes with the parameters.
+//! The learned part of a twin: its variants, their parameters, their elastic readings, and
+//! gradients with respect to the parameters.
 //!
-//! The network is small and its structure is fixed, so it is differentiated here by hand, and a test compares every derivative with a
-//! difference quotient. A framework for automatic differentiation would take a third of the processor time of the whole build.
+//! The network is small and its structure is fixed, so its gradients are written by hand, and a
+//! test compares every derivative with a difference quotient. A framework for automatic
+//! differentiation would take a third of the processor time of the whole build.
 
 mod elastic;
 mod normalization;

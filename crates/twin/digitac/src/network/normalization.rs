@@ -1,4 +1,5 @@
-//! Scales of features and readings over the training presses, so that inputs and outputs of the network are of order one.
+//! Scales of features and readings over the training presses, so that inputs and outputs of the
+//! network are of order one.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +19,7 @@ pub(crate) struct Normalization {
 }
 
 impl Normalization {
-    /// Measures training presses. `None` if there is no usable positive reading.
+    /// The scales of training presses. `None` if there is no usable positive reading.
     pub(crate) fn of(presses: &[&PairedPress]) -> Option<Self> {
         let n_taxels = presses.first()?.readings_kpa.first()?.len();
         let usable = presses
@@ -59,7 +60,7 @@ impl Normalization {
     }
 }
 
-/// Root mean square distance from a center; one if there is none.
+/// Root mean square distance from a center; 1 if it is zero or there are no values.
 fn deviation_about(values: &[f64], center: f64) -> f64 {
     let squares: f64 = values.iter().map(|v| (v - center).powi(2)).sum();
     let deviation = (squares / values.len().max(1) as f64).sqrt();

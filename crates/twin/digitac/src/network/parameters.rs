@@ -1,7 +1,8 @@
-//! What a network learns.
+//! The learned parameters of a network.
 //!
-//! Every parameter of the physics is a change to what was fitted directly and starts at zero, and so does the
-//! last layer of the perceptron: training begins at the physical model, and weight decay pulls back to it.
+//! Every parameter of the physics is a change of a directly fitted value and starts at zero, and so
+//! does the last layer of the perceptron. Training therefore begins at the physical model, and
+//! weight decay regularizes towards it.
 
 use std::collections::BTreeMap;
 
@@ -13,30 +14,31 @@ use super::{Physics, Variant};
 use crate::features::Gains;
 use crate::seed;
 
-/// Weights and biases of files are no larger.
+/// Largest magnitude of weights and biases in files.
 const LARGEST: f32 = 1e6;
-/// Changes of ln gain of files are no larger.
+/// Largest magnitude of changes of ln gain in files.
 const LARGEST_CHANGE: f32 = 50.0;
 
 /// Above this, ln(1 + exp(x)) is x.
 const SOFTPLUS_IS_LINEAR: f32 = 20.0;
 
-/// Parameters of one variant. Also holds a gradient by them.
+/// Parameters of one variant. The type also holds a gradient with respect to them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Parameters {
     /// Change of ln gain; `[n_taxels]`.
     pub(crate) gain_change: Vec<f32>,
-    /// Change of memory, before the softplus that keeps it positive; `[n_time_constants][n_taxels]`, row by row.
+    /// Change of the overstress shares (memory), before the softplus that keeps them positive;
+    /// `[n_time_constants][n_taxels]`, row by row.
     pub(crate) memory_change: Vec<f32>,
-    /// The perceptron; none in variants without.
+    /// The layers of the perceptron; empty in variants without one.
     pub(crate) layers: Vec<Linear>,
 }
 
-/// Plain weights: shape and numbers, row by row.
+/// Plain weights by name: shape, and values row by row.
 pub(crate) type Weights = BTreeMap<String, (Vec<usize>, Vec<f32>)>;
 
 impl Parameters {
-    /// Parameters that change nothing yet.
+    /// Initial parameters, which do not change the physical model.
     pub(crate) fn new(physics: &Physics, hidden: &[usize], seed_number: u64) -> Self {
         let n_taxels = physics.n_taxels();
         let mut layers = Vec::new();
@@ -115,13 +117,15 @@ impl Parameters {
         widths.take(self.layers.len().saturating_sub(1)).collect()
     }
 
-    /// Share of each overstress in the reading, not negative; `[n_time_constants][n_taxels]`, row by row.
+    /// Share of each overstress in the reading, not negative; `[n_time_constants][n_taxels]`, row
+    /// by row.
     pub(crate) fn memory(&self, physics: &Physics) -> Vec<f32> {
         let changed = physics.start_memory().into_iter().zip(&self.memory_change);
         changed.map(|(start, change)| softplus(start + change)).collect()
     }
 
-    /// Gradient by [`memory_change`](Self::memory_change), from the gradient by [`Parameters::memory`].
+    /// Gradient with respect to [`memory_change`](Self::memory_change), from the gradient with
+    /// respect to [`Parameters::memory`].
     pub(crate) fn memory_gradient(&self, physics: &Physics, of_memory: &[f32]) -> Vec<f32> {
         let changed = physics.start_memory().into_iter().zip(&self.memory_change);
         changed

@@ -4,7 +4,7 @@ use std::f32::consts::{PI, SQRT_2};
 
 use twintac_learn::{Linear, Matrix};
 
-/// What a gradient needs of a forward pass.
+/// Values of a forward pass that a gradient needs.
 pub(crate) struct PerceptronPass {
     /// Inputs of each layer; `[n_layers]`.
     inputs: Vec<Matrix>,
@@ -12,7 +12,8 @@ pub(crate) struct PerceptronPass {
     sums: Vec<Matrix>,
 }
 
-/// Outputs of the layers for each row of `inputs`, in the last of `rows`, which there is one of for each layer.
+/// Outputs of the layers for each row of `inputs`, in the last of `rows`, which has one matrix for
+/// each layer.
 pub(crate) fn outputs<'a>(layers: &[Linear], inputs: &Matrix, rows: &'a mut [Matrix]) -> &'a mut Matrix {
     for (index, layer) in layers.iter().enumerate() {
         let (before, after) = rows.split_at_mut(index);
@@ -26,7 +27,7 @@ pub(crate) fn outputs<'a>(layers: &[Linear], inputs: &Matrix, rows: &'a mut [Mat
     &mut rows[layers.len() - 1]
 }
 
-/// Outputs of the layers for each row of `inputs`, with what a gradient needs.
+/// Outputs of the layers for each row of `inputs`, with the values that a gradient needs.
 pub(crate) fn forward(layers: &[Linear], inputs: &Matrix) -> (Matrix, PerceptronPass) {
     let mut pass = PerceptronPass {
         inputs: Vec::with_capacity(layers.len()),
@@ -48,7 +49,7 @@ pub(crate) fn forward(layers: &[Linear], inputs: &Matrix) -> (Matrix, Perceptron
     (rows, pass)
 }
 
-/// Gradients of the layers' parameters, from the gradient of the outputs.
+/// Gradients with respect to the layers' parameters, from the gradient with respect to the outputs.
 pub(crate) fn gradient(layers: &[Linear], pass: &PerceptronPass, mut of_outputs: Matrix) -> Vec<Linear> {
     let mut gradients = Vec::with_capacity(layers.len());
     for (index, layer) in layers.iter().enumerate().rev() {

@@ -1,25 +1,26 @@
-//! The fixed part of a variant: what it computes with and does not learn.
+//! The fixed part of a variant, which is not learned.
 
 use super::{Normalization, Variant};
 use crate::Features;
 use crate::features::Gains;
 use twintac_learn::Matrix;
 
-/// Memory shares below this start here: at zero the gradient vanishes.
+/// Overstress shares below this start at it, because the gradient vanishes at zero.
 const SMALLEST_MEMORY: f64 = 1e-3;
 
-/// The fixed part of a variant: what it computes with and does not learn.
+/// The fixed part of a variant, which is not learned.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Physics {
     pub(crate) variant: Variant,
     pub(crate) gains: Gains,
     pub(crate) normalization: Normalization,
-    /// Largest correction over the size of the frame's readings.
+    /// Largest correction as a fraction of the size of the frame's readings.
     pub(crate) correction_limit: f64,
 }
 
 impl Physics {
-    /// What the variant reads of a press: port pressures, kPa, or the paper's stress features, kPa/mm; `[n_frames][n_taxels]`.
+    /// The variant's input from a press: port pressures, kPa, or the paper's stress features,
+    /// kPa/mm; `[n_frames][n_taxels]`.
     pub(crate) fn seen<'a>(&self, features: &'a Features) -> &'a [Vec<f64>] {
         match self.variant {
             Variant::Paper => &features.stress_kpa_per_mm,
@@ -37,7 +38,7 @@ impl Physics {
         inputs
     }
 
-    /// Inputs of order one from what the variant reads in one frame; `[n_taxels]`.
+    /// Inputs of order one from the variant's input of one frame; `[n_taxels]`.
     pub(crate) fn scale(&self, seen: &[f64], inputs: &mut [f32]) {
         let n = &self.normalization;
         if self.variant == Variant::Paper {
@@ -65,7 +66,8 @@ impl Physics {
         }
     }
 
-    /// Readings of order one over inputs of order one, without what is learned; `[n_taxels]`.
+    /// Ratio of readings of order one to inputs of order one, without learned changes;
+    /// `[n_taxels]`.
     pub(crate) fn start_gains(&self) -> Vec<f32> {
         let n = &self.normalization;
         let gains = self.gains.gain.iter().zip(&n.pressure_rms_kpa);
@@ -82,7 +84,7 @@ impl Physics {
             .collect()
     }
 
-    /// Memory before the softplus; `[n_time_constants][n_taxels]`, row by row.
+    /// Overstress shares before the softplus; `[n_time_constants][n_taxels]`, row by row.
     pub(crate) fn start_memory(&self) -> Vec<f32> {
         let inverse_softplus = |share: f64| share.max(SMALLEST_MEMORY).exp_m1().ln();
         (0..self.n_time_constants())

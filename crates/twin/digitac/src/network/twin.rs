@@ -1,11 +1,11 @@
-//! A trained twin: from a simulated gel to what the barometers would read.
+//! A trained twin: from a simulated gel to the readings of the barometers.
 
 use std::sync::Arc;
 
 use super::{Parameters, Physics, Variant};
 use crate::features::Gains;
 
-/// A trained twin of one sensor. Copies share what was learned.
+/// A trained twin of one sensor. Copies share the learned values.
 #[derive(Clone, Debug)]
 pub struct Twin {
     learned: Arc<Learned>,
@@ -33,7 +33,8 @@ impl Twin {
         }
     }
 
-    /// The same twin with other gains; only for variants without a perceptron, which has learned to go with its own.
+    /// The same twin with other gains. Only for variants without a perceptron, which is trained
+    /// together with its gains.
     #[must_use]
     pub(crate) fn with_gains(&self, gains: Gains) -> Self {
         let physics = Physics {
@@ -44,7 +45,8 @@ impl Twin {
         Self::new(self.taxels().to_vec(), physics, parameters)
     }
 
-    /// The same twin with gains that were fitted to another sensor, and with the correction that it has learned or without.
+    /// The same twin with gains that were fitted to another sensor, with or without its learned
+    /// correction.
     #[must_use]
     pub(crate) fn adapted(&self, gains: Gains, keeps_correction: bool) -> Self {
         let variant = self.variant();
@@ -76,13 +78,13 @@ impl Twin {
         &self.learned.taxels
     }
 
-    /// Which model it is.
+    /// The variant of its model.
     #[must_use]
     pub fn variant(&self) -> Variant {
         self.learned.physics.variant
     }
 
-    /// Gains and memory as learned; the paper's variant uses none.
+    /// Learned gains and relaxation; the paper's variant does not use any.
     #[must_use]
     pub fn gains(&self) -> &Gains {
         &self.learned.gains

@@ -2,22 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The inputs of a model, and how it computes readings from them.
+/// A model: its inputs, and how it computes readings from them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Variant {
-    /// The TwinTac paper's: its stress features through a multilayer perceptron, frame by frame.
+    /// The TwinTac paper's model: its stress features through a multilayer perceptron, frame by
+    /// frame.
     #[serde(rename = "paper")]
     Paper,
-    /// The hydrostatic pressure at each port times one gain a taxel.
+    /// The hydrostatic pressure at each port times one gain for each taxel.
     #[serde(rename = "pressure")]
     Pressure,
-    /// With a bounded correction by a multilayer perceptron that sees all ports.
+    /// `Pressure` with a bounded correction by a multilayer perceptron whose inputs are all ports.
     #[serde(rename = "pressure+mlp")]
     PressureMlp,
-    /// With quasi-linear viscoelastic memory, taxel by taxel.
+    /// `Pressure` with quasi-linear viscoelastic relaxation, taxel by taxel.
     #[serde(rename = "pressure+memory")]
     PressureMemory,
-    /// With both: the correction is added to the elastic reading, so that the memory acts on it as well.
+    /// `Pressure` with both. The correction is added to the elastic reading, so that relaxation
+    /// acts on it as well.
     #[serde(rename = "pressure+memory+mlp")]
     PressureMemoryMlp,
 }
@@ -50,7 +52,8 @@ impl Variant {
         matches!(self, Self::Paper | Self::PressureMlp | Self::PressureMemoryMlp)
     }
 
-    /// The same without its multilayer perceptron; the paper's is nothing else.
+    /// The variant without its multilayer perceptron; the paper's variant has nothing else and
+    /// stays.
     #[must_use]
     pub(crate) fn without_perceptron(self) -> Self {
         match self {

@@ -1,6 +1,7 @@
 //! The sum of products.
 
-/// Sums that are formed side by side, so that processors with vectors form them at once. The order of additions is always the same.
+/// Number of partial sums, which processors with vectors form in parallel. The order of additions
+/// is always the same.
 const LANES: usize = 8;
 
 /// The sum of the products of two vectors of the same length.

@@ -1,10 +1,10 @@
 //! Golden-section search (Kiefer, Proc. AMS 4, 1953).
 
-/// Steps at most: by then an interval of any size is below what doubles tell apart.
+/// Largest number of steps. After these, an interval of any size is below the resolution of `f64`.
 const MOST_STEPS: u32 = 200;
 
-/// The argument between two bounds, to a tolerance, at which a function is smallest, and its value there. Of several local minima it finds
-/// one.
+/// The argument between two bounds, to a tolerance, at which a function is smallest, and the value
+/// there. If there are several local minima, it finds one of them.
 pub(crate) fn minimize(
     mut low: f64,
     mut high: f64,

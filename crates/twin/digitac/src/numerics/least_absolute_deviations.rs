@@ -1,15 +1,17 @@
-//! Linear fits that are robust to outliers, with nonnegative coefficients. faer has no solver with bounds.
+//! Linear fits with nonnegative coefficients that are robust to outliers. `faer` has no solver with
+//! bounds.
 
-/// Rounds of reweighting.
+/// Number of rounds of reweighting.
 const ROUNDS: usize = 12;
-/// Residuals below this fraction of the largest target are weighted quadratically, larger ones linearly: the corner of Huber's
-/// loss.
+/// Residuals below this fraction of the largest target are weighted quadratically, larger ones
+/// linearly: the corner of Huber's loss.
 const CORNER: f64 = 2e-3;
-/// Rounds over the coefficients in coordinate descent.
+/// Number of rounds over the coefficients in coordinate descent.
 const DESCENTS: usize = 200;
 
-/// Coefficients a ≥ 0 that make Σ a columns ≈ target in the sense of least absolute deviations (iteratively
-/// reweighted least squares), and the mean absolute deviation. Columns that are all zero get zero.
+/// Coefficients a ≥ 0 for which Σ a columns approximates the target in the sense of least absolute
+/// deviations (iteratively reweighted least squares), and the mean absolute deviation. Columns of
+/// zeros get the coefficient zero.
 pub(crate) fn fit_nonnegative(columns: &[Vec<f64>], target: &[f64]) -> (Vec<f64>, f64) {
     let n_columns = columns.len();
     let mut coefficients = vec![0.0; n_columns];
@@ -64,7 +66,7 @@ fn normal_equations(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> (V
     (matrix, right.collect())
 }
 
-/// Minimizes the quadratic over a ≥ 0, one coefficient after the other.
+/// Minimizes the quadratic function over a ≥ 0, one coefficient after another.
 fn descend(matrix: &[f64], right: &[f64], coefficients: &mut [f64]) {
     let n = right.len();
     for _ in 0..DESCENTS {

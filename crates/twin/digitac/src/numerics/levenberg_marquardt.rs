@@ -1,8 +1,10 @@
-//! Minimization of a sum of robust penalties within bounds, with the Gauss-Newton matrix of reweighted residuals, and pulls to what is known before.
+//! Minimization of a sum of robust penalties within bounds, with the Gauss-Newton matrix of
+//! reweighted residuals, and with regularization towards prior values.
 
 use twintac_fit::{Method, Problem, Quadratic, Range, minimize};
 
-/// Steps that lower the cost by less than 1e-5 of it do not count as progress; three of them end the search.
+/// Steps that lower the cost by less than a fraction of 1e-5 do not count as progress; three of
+/// them end the search.
 const METHOD: Method = Method {
     damping: [1e-3, 1e-9, 1e7],
     factors: [0.2, 5.0],
@@ -12,20 +14,20 @@ const METHOD: Method = Method {
     exact: 0.0,
 };
 
-/// Where an unknown may be, and what holds it back.
+/// Range and regularization of an unknown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unknown {
-    /// Where the search starts.
+    /// Initial value.
     pub(crate) start: f64,
     /// Smallest and largest value.
     pub(crate) bounds: [f64; 2],
-    /// Value to which it is pulled.
+    /// Value towards which it is regularized.
     pub(crate) center: f64,
-    /// The pull's cost: this times the squared distance from the center.
+    /// Cost of the regularization: this number times the squared distance from the center.
     pub(crate) pull: f64,
 }
 
-/// A cost with pulls.
+/// A cost with regularization.
 struct Pulled<'a, N, C> {
     unknowns: &'a [Unknown],
     near: N,
@@ -57,7 +59,7 @@ where
     }
 }
 
-/// The point with the smallest cost. `near` gives the slopes of the cost, `cost` its value.
+/// The point with the smallest cost. `near` gives the derivatives of the cost, `cost` its value.
 pub(crate) fn minimize_robust<E>(
     unknowns: &[Unknown],
     near: impl FnMut(&[f64]) -> Result<Quadratic, E>,
@@ -91,7 +93,7 @@ mod tests {
         }
     }
 
-    /// Distance of a straight line from points, of which one lies far off.
+    /// Distance of a straight line from points, one of which is an outlier.
     fn line(x: &[f64]) -> (f64, Quadratic) {
         let mut cost = 0.0;
         let mut quadratic = Quadratic {

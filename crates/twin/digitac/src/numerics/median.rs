@@ -1,6 +1,6 @@
 //! The median.
 
-/// The median; zero of nothing.
+/// The median; zero if there are no values.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let n = values.len();

@@ -1,4 +1,5 @@
-//! Numerical methods that do not depend on what they are used for: searches, robust fits, and small linear systems.
+//! Numerical methods that are independent of their use: searches, robust fits, and small linear
+//! systems.
 
 mod dot;
 mod golden_section;

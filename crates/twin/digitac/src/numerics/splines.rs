@@ -1,6 +1,7 @@
 //! Smooth functions of a distance.
 
-/// Cubic B-splines at a position, with knots at 0, 1, …, mirrored at 0: a sum of them has no slope there.
+/// Cubic B-splines at a position, with knots at 0, 1, …, mirrored at 0, so that the slope of a sum
+/// of them is zero there.
 pub(crate) fn mirrored_splines<const N: usize>(position: f64) -> [f64; N] {
     let bell = |x: f64| {
         let x = x.abs();

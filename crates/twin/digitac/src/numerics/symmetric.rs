@@ -1,9 +1,9 @@
-//! Inverses of matrices of which some unknowns are held.
+//! Inverses of matrices for some of their unknowns.
 
 use twintac_fit::Triangle;
 
-/// The inverse of a positive definite matrix, of which only the lower triangle is read, for the unknowns that are free; zero for all others.
-/// Row by row; `[n * n]`.
+/// The inverse of a positive definite matrix, of which only the lower triangle is read, for the
+/// free unknowns; zero for all others. Row by row; `[n * n]`.
 pub(crate) fn inverse_symmetric(matrix: &[f64], is_free: &[bool]) -> Vec<f64> {
     let n = is_free.len();
     let free: Vec<usize> = (0..n).filter(|&i| is_free[i]).collect();

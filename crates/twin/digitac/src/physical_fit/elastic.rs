@@ -1,40 +1,41 @@
-//! Port pressures, and how they change with what is unknown about the bench.
+//! Port pressures, and their derivatives with respect to the unknowns of the test setup.
 
 use std::ops::Range;
 
 use crate::DigitacError;
 use crate::numerics::Unknown;
 
-/// How port pressures change with one unknown.
+/// Derivatives of port pressures with respect to one unknown.
 pub(crate) struct Slope {
     pub(crate) unknown: usize,
     /// The taxel that it belongs to; `None` if it belongs to all.
     pub(crate) taxel: Option<usize>,
-    /// Frames of whole mountings that it acts on.
+    /// Frames on which it acts; they are those of whole installations.
     pub(crate) frames: Range<usize>,
-    /// `[n_taxels][frames.len()]`, or of the one taxel.
+    /// Derivatives, kPa per unit of the unknown; `[n_taxels][frames.len()]`, or one row for a
+    /// single taxel.
     pub(crate) kpa: Vec<Vec<f64>>,
 }
 
 /// Port pressures of all frames.
 pub(crate) struct Pressures {
-    /// `[n_taxels][n_frames]`
+    /// Pressures, kPa; `[n_taxels][n_frames]`.
     pub(crate) kpa: Vec<Vec<f64>>,
     pub(crate) slopes: Vec<Slope>,
 }
 
-/// What answers with port pressures.
+/// A model of port pressures.
 pub(crate) trait Elastic {
-    /// What is unknown about it.
+    /// Its unknowns.
     fn unknowns(&self) -> Vec<Unknown>;
 
-    /// Port pressures for values of the unknowns; slopes only if they are asked for.
+    /// Port pressures for values of the unknowns. Derivatives are computed only with `with_slopes`.
     fn pressures(&self, values: &[f64], with_slopes: bool) -> Result<Pressures, DigitacError>;
 }
 
 /// Port pressures that are known.
 pub(crate) struct Known {
-    /// `[n_taxels][n_frames]`
+    /// Pressures, kPa; `[n_taxels][n_frames]`.
     pub(crate) kpa: Vec<Vec<f64>>,
 }
 

@@ -1,7 +1,8 @@
-//! Fits barometers, and what is unknown about the bench, to measured presses at once.
+//! Fits barometers and the unknowns of the test setup to measured presses at the same time.
 //!
-//! The sum of absolute deviations is minimized, each over the largest reading of its file. Readings are linear in what the memory sees, so
-//! each column of the Jacobian is a derivative of the elastic reading that goes through the same memory.
+//! The sum of absolute deviations is minimized, each over the largest reading of its file. Readings
+//! are linear in the elastic reading that relaxation acts on, so each column of the Jacobian is a
+//! derivative of the elastic reading, put through the same relaxation.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -15,7 +16,7 @@ use crate::DigitacError;
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
 use crate::numerics::{Unknown, dot, fit_nonnegative, inverse_symmetric, minimize_robust};
 
-/// Deviations below this share of the largest reading count quadratically, larger ones linearly.
+/// Deviations below this fraction of the largest reading count quadratically, larger ones linearly.
 const CORNER: f64 = 2e-3;
 
 /// The result of a fit.
@@ -27,8 +28,8 @@ pub(crate) struct Solution {
     pub(crate) deviation: f64,
 }
 
-/// Fits to the readings of a series, from scratch or from where another fit ended. What is common to all taxels does not depend on those
-/// that are left out; these get gains all the same.
+/// Fits to the readings of a series, from a default start or from the result of another fit.
+/// Unknowns that all taxels share do not depend on excluded taxels; these get gains of their own.
 pub(crate) fn fit(
     elastic: &dyn Elastic,
     series: &Series,
@@ -79,8 +80,8 @@ pub(crate) fn fit(
     })
 }
 
-/// Fits to the readings of a series what is pulled to values that were learned elsewhere: `elastic` pulls its own unknowns, `prior` the
-/// barometers to `learned`.
+/// Fits to the readings of a series, with regularization towards values that were learned
+/// elsewhere: `elastic` regularizes its own unknowns, `prior` the barometers towards `learned`.
 pub(crate) fn fit_near_learned(
     elastic: &dyn Elastic,
     series: &Series,
@@ -110,8 +111,9 @@ pub(crate) fn fit_near_learned(
     })
 }
 
-/// How much each press of a series would say of the unknowns, at the values that were learned: matrices, row by row, of which the lower triangle
-/// counts; `[n_presses][n * n]`. Beside them what is known beforehand of each unknown; `[n]`.
+/// The information of each press of a series about the unknowns, at the learned values: matrices,
+/// row by row, of which only the lower triangle counts; `[n_presses][n * n]`. Then the prior
+/// information about each unknown; `[n]`.
 pub(crate) fn information(
     elastic: &dyn Elastic,
     series: &Series,
@@ -172,7 +174,8 @@ fn near_learned(
     (layout, unknowns)
 }
 
-/// Nonnegative gains and shares that fit best at the time constants, by least absolute deviations.
+/// Nonnegative gains and overstress shares that fit best at the given time constants, by least
+/// absolute deviations.
 fn start_gains(pressures: &Pressures, series: &Series, time_constants_s: &[f64]) -> Gains {
     let all = 0..series.n_frames();
     let mut gains = Gains {
@@ -207,7 +210,7 @@ fn start_gains(pressures: &Pressures, series: &Series, time_constants_s: &[f64])
     gains
 }
 
-/// Geometric mean of the gains of taxels that are not left out.
+/// Geometric mean of the gains of all taxels that are not excluded.
 fn usual_gain(gains: &Gains, left_out: &BTreeSet<usize>) -> f64 {
     let kept = || {
         gains
@@ -220,9 +223,10 @@ fn usual_gain(gains: &Gains, left_out: &BTreeSet<usize>) -> f64 {
     (sum / kept().count().max(1) as f64).exp()
 }
 
-/// The memory of one time constant over all frames.
+/// The relaxation with one time constant over all frames.
 struct Fading {
-    /// Shares of the old overstress that stay, and of the change that arrives, with their derivatives by ln time constant; `[n_frames]`.
+    /// The remaining share of the old overstress and the share of a change that becomes overstress,
+    /// with their derivatives with respect to ln time constant; `[n_frames]`.
     shares: Vec<[f64; 4]>,
 }
 
@@ -239,7 +243,8 @@ impl Fading {
         }
     }
 
-    /// The overstress that follows values, which belong to the frames of `range` and are zero before it.
+    /// The overstress that follows `values`, which belong to the frames of `range`; there is none
+    /// before.
     fn follow(&self, range: &Range<usize>, values: &[f64]) -> Vec<f64> {
         let mut q = vec![0.0; values.len()];
         for (i, [kept, arrived, ..]) in self.shares[range.clone()].iter().enumerate().skip(1) {
@@ -248,7 +253,7 @@ impl Fading {
         q
     }
 
-    /// Derivative by ln time constant of an overstress that follows values.
+    /// Derivative, with respect to ln time constant, of an overstress that follows `values`.
     fn slope(&self, values: &[f64], q: &[f64]) -> Vec<f64> {
         let mut slope = vec![0.0; values.len()];
         for (i, [kept, _, kept_slope, arrived_slope]) in self.shares.iter().enumerate().skip(1) {
@@ -259,7 +264,8 @@ impl Fading {
     }
 }
 
-/// Adds the shares of all overstresses that follow values, which belong to the frames of `range` and are zero before it.
+/// Adds the shares of all overstresses that follow `values`, which belong to the frames of `range`;
+/// there are none before.
 fn add_overstresses(fadings: &[Fading], shares: &[f64], range: &Range<usize>, values: &mut [f64]) {
     let mut overstresses = vec![0.0; fadings.len()];
     let mut before = values.first().copied().unwrap_or(0.0);
@@ -281,12 +287,12 @@ struct Problem<'a> {
     layout: &'a Layout,
 }
 
-/// What one taxel reads, and what it is made of.
+/// The readings of one taxel, and the quantities that they are computed from.
 struct TaxelPass {
     elastic_kpa: Vec<f64>,
     overstress_kpa: Vec<Vec<f64>>,
     relaxed_kpa: Vec<f64>,
-    /// Over the largest reading of the mounting.
+    /// Deviations over the largest reading of the installation; `[n_frames]`.
     deviations: Vec<f64>,
 }
 
@@ -332,7 +338,7 @@ impl Problem<'_> {
         self.sum(x, &|deviation| deviation.hypot(CORNER) - CORNER, true)
     }
 
-    /// Weighted mean of the absolute deviations of the taxels that are not left out.
+    /// Weighted mean of the absolute deviations of all taxels that are not excluded.
     fn deviation(&self, x: &[f64]) -> Result<f64, DigitacError> {
         self.sum(x, &|deviation| deviation.abs(), false)
     }
@@ -387,13 +393,14 @@ impl Problem<'_> {
             .iter()
             .map(|e| port_slopes(gains.stiffening_per_kpa[k], *e))
             .collect();
-        // What the memory and the zero make of a change of the relaxed reading.
+        // Effect of relaxation and of the zero on a change of the relaxed reading.
         let remember = |unknown: usize, frames: Range<usize>, mut values: Vec<f64>| {
             add_overstresses(fadings, &gains.memory[k], &frames, &mut values);
             self.column(unknown, frames, values)
         };
         let own = self.layout.of_taxel(k);
-        // What a unit of the common growth does to this taxel's own law, which falls with its gain.
+        // Effect of a unit of the common growth on the nonlinearity of this taxel; it is inversely
+        // proportional to the taxel's gain.
         let share = self.layout.usual_gain / gains.gain[k] / self.layout.largest_kpa;
         let falls = share * x[self.layout.common()];
         let of_gain = law
@@ -489,7 +496,7 @@ impl Problem<'_> {
     }
 }
 
-/// Adds the weighted products of columns over some frames.
+/// Adds the weighted products of columns over some frames to a matrix.
 fn add_products(columns: &[Column], weights: &[f64], frames: &Range<usize>, matrix: &mut [f64], n: usize) {
     for (a, column) in columns.iter().enumerate() {
         for other in &columns[..=a] {
@@ -508,7 +515,8 @@ fn add_products(columns: &[Column], weights: &[f64], frames: &Range<usize>, matr
     }
 }
 
-/// Derivative of a taxel's deviations by one unknown, over some frames; zero elsewhere.
+/// Derivative of a taxel's deviations with respect to one unknown, over some frames; zero
+/// elsewhere.
 #[derive(Clone)]
 struct Column {
     unknown: usize,
@@ -523,7 +531,8 @@ mod tests {
     use crate::features::zero_frames;
     use crate::physical_fit::{Fitted, Slope};
 
-    /// Two presses that follow each other within a second, down, held and up again, and one after a rest; two taxels.
+    /// Two presses that follow each other within a second, each down, held and up, and one after a
+    /// rest; two taxels.
     fn presses() -> Vec<Features> {
         let press = |start_s: f64, deepest_mm: f64, since_previous_s: Option<f64>| {
             let time_s: Vec<f64> = (0..120).map(|i| start_s + 0.06 * f64::from(i)).collect();
@@ -573,7 +582,7 @@ mod tests {
         Series::new(&fitted, 2, &BTreeSet::new())
     }
 
-    /// Pressures that grow by a share that is unknown.
+    /// Pressures that are scaled by an unknown share.
     struct Scaled {
         kpa: Vec<Vec<f64>>,
     }

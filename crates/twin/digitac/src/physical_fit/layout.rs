@@ -1,37 +1,39 @@
-//! Which unknown of a fit stands where, and between which limits.
+//! Order and limits of the unknowns of a fit.
 
 use super::prior::{BarometerWidths, Prior};
 use crate::Features;
 use crate::features::Gains;
 use crate::numerics::{Unknown, median};
 
-/// How far from its start a time constant is looked for, as a factor.
+/// Largest change of a time constant from its start, as a factor.
 const TIME_CONSTANT_REACH: f64 = 6.0;
 /// Smallest and largest share of an overstress in the reading.
 const SHARES: [f64; 2] = [0.0, 5.0];
 /// Smallest and largest relative growth of a reading at the largest reading of all.
 const STIFFENING: [f64; 2] = [-1.0, 3.0];
-/// Pull of the growth that is common to all taxels to zero.
+/// Regularization of the growth that is common to all taxels, towards zero.
 const STIFFENING_PULL: f64 = 1e-5;
-/// Pull of a taxel's own growth to the common one.
+/// Regularization of a taxel's own growth, towards the common one.
 const OWN_STIFFENING_PULL: f64 = 1e-3;
-/// How far from its start a gain is looked for, as a factor.
+/// Largest change of a gain from its start, as a factor.
 const GAIN_REACH: f64 = 100.0;
-/// Gains below this share of the largest start there.
+/// Gains below this fraction of the largest start at it.
 const SMALLEST_GAIN: f64 = 1e-4;
 
-/// What barometers can do.
+/// The model of the barometers.
 #[derive(Clone, Debug)]
 pub(crate) struct BarometerModel {
-    /// Time constants that the fit starts from, s; none for barometers without memory.
+    /// Initial time constants, s; empty for barometers without relaxation.
     pub(crate) time_constants_s: Vec<f64>,
-    /// Whether readings may grow otherwise than in proportion to the pressure.
+    /// Whether the response to pressure may be nonlinear.
     pub(crate) has_port_law: bool,
 }
 
 impl BarometerModel {
-    /// The model for readings of some presses. If each is a single frame, there is neither memory nor port law: a port's pressure then depends on its
-    /// distance alone, where a port law cannot be told from what the tip does otherwise than simulated.
+    /// The model for readings of some presses. If each press is a single frame, there is neither
+    /// relaxation nor a static nonlinearity: the pressure at a port then depends on its distance
+    /// alone, and a nonlinearity cannot be separated from differences between the real and the
+    /// simulated tip.
     pub(crate) fn new<'a>(
         presses: impl IntoIterator<Item = &'a Features>,
         time_constants_s: &[f64],
@@ -50,13 +52,16 @@ impl BarometerModel {
     }
 }
 
-/// Which unknown stands where: those of the port pressures, ln time constants, the relative growth and the ln gain that are common to all
-/// taxels, and of each taxel its own ln gain, its own relative growth, and shares of the overstresses.
+/// Order of the unknowns: those of the port pressures; ln time constants; the relative growth and
+/// the ln gain that are common to all taxels; then for each taxel its own ln gain, its own relative
+/// growth, and its shares of the overstresses.
 ///
-/// The common ln gain is zero but where gains are pulled to others: a whole sensor may read more than another.
+/// The common ln gain is zero except where gains are regularized towards those of another sensor,
+/// because a whole sensor may have larger readings than another one.
 ///
-/// The common growth belongs to the gel: it is the same at the same port pressure, whatever the gain. It is given at the largest reading of
-/// a taxel of usual gain; a taxel's own growth, at the largest reading.
+/// The common growth belongs to the gel: at the same port pressure it is the same for any gain. It
+/// is given at the largest reading, for a taxel of the usual gain. A taxel's own growth is given at
+/// the largest reading.
 pub(super) struct Layout {
     pub(super) n_elastic: usize,
     pub(super) n_constants: usize,
@@ -97,7 +102,7 @@ impl Layout {
         unknowns
     }
 
-    /// Pulls the unknowns of the barometers to where they start, and lets the common gain go.
+    /// Regularizes the unknowns of the barometers towards their start, and frees the common gain.
     pub(super) fn pull(&self, unknowns: &mut [Unknown], prior: Prior) {
         let widths = BarometerWidths::USUAL;
         let common = self.common() - self.n_elastic;
@@ -117,7 +122,7 @@ impl Layout {
         }
     }
 
-    /// Where the growth that is common to all taxels stands.
+    /// Index of the growth that is common to all taxels.
     pub(super) fn common(&self) -> usize {
         self.n_elastic + self.n_constants
     }
@@ -127,7 +132,7 @@ impl Layout {
         &x[..self.n_elastic]
     }
 
-    /// Where the unknowns of a taxel start.
+    /// Index of the first unknown of a taxel.
     pub(super) fn of_taxel(&self, k: usize) -> usize {
         self.common() + 2 + k * (2 + self.n_constants)
     }

@@ -1,4 +1,4 @@
-//! Barometers fitted to measured presses, together with what is unknown about the bench.
+//! Barometers fitted to measured presses, together with the unknowns of the test setup.
 
 mod elastic;
 mod fit;

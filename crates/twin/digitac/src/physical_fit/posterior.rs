@@ -1,20 +1,20 @@
-//! What a fit near learned values has found, and how sure it is.
+//! The result of a fit near learned values, with its uncertainty.
 
 use super::layout::Layout;
 use crate::Gains;
 
-/// Step of an unknown for slopes.
+/// Step of an unknown for difference quotients.
 const STEP: f64 = 1e-5;
 
-/// What was found, and how sure it is.
+/// The fitted values and their covariance.
 pub(crate) struct Posterior {
     pub(crate) gains: Gains,
     /// Weighted mean of the absolute deviations over the largest readings.
     pub(crate) deviation: f64,
     pub(super) layout: Layout,
-    /// All unknowns.
+    /// Values of all unknowns; `[n]`.
     pub(super) x: Vec<f64>,
-    /// Of all unknowns, row by row; `[n * n]`.
+    /// Covariance of all unknowns, row by row; `[n * n]`.
     pub(super) covariance: Vec<f64>,
 }
 
@@ -24,7 +24,8 @@ impl Posterior {
         self.layout.of_elastic(&self.x)
     }
 
-    /// The standard deviation of what follows from the unknowns of the port pressures and from the barometers.
+    /// Standard deviation of a quantity that depends on the unknowns of the port pressures and on
+    /// the barometers.
     pub(crate) fn uncertainty(&self, value: &dyn Fn(&[f64], &Gains) -> f64) -> f64 {
         let n = self.x.len();
         let at = |x: &[f64]| {

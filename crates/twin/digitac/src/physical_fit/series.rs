@@ -1,16 +1,18 @@
-//! Frames of presses in the order in which they happened, as a fit of barometers sees them.
+//! Frames of presses in the order in which they happened, as input of a fit of barometers.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::Features;
 
-/// Frames whose largest reading is below this fraction of the file's largest do not count as touched.
+/// Frames whose largest reading is below this fraction of the file's largest do not count as
+/// contact.
 const CONTACT_FRACTION: f64 = 0.03;
-/// How much more the nearest taxel of a touched frame counts than any other reading.
+/// Weight of the nearest taxel of a frame in contact, relative to any other reading.
 const NEAREST_WEIGHT: f64 = 3.0;
 
-/// A press for a fit: `is_used` says whether its readings are fitted to; those of others are not looked at, but the gel remembers them.
+/// A press of a fit. `is_used` says whether its readings are fitted. The readings of other presses
+/// are not used, but their relaxation is taken into account.
 pub(crate) struct Fitted<'a> {
     pub(crate) mounting: &'a str,
     pub(crate) features: &'a Features,
@@ -19,26 +21,28 @@ pub(crate) struct Fitted<'a> {
     pub(crate) is_used: bool,
 }
 
-/// Frames of presses one after the other.
+/// Frames of presses, one press after another.
 pub(crate) struct Series {
-    /// Time since the frame before, s; `None` if the gel had rested. `[n_frames]`
+    /// Time since the previous frame, s; `None` if the gel had rested; `[n_frames]`.
     pub(crate) since_s: Vec<Option<f64>>,
     /// Frames of each press.
     pub(crate) presses: Vec<Range<usize>>,
     /// Frames of each press over which readings were set to zero.
     pub(crate) zeros: Vec<Range<usize>>,
-    /// Of each mounting, whose presses stand together.
+    /// Frames of each installation, whose presses are next to each other.
     pub(crate) mountings: BTreeMap<String, Range<usize>>,
-    /// Measured readings; `[n_taxels][n_frames]`
+    /// Measured readings, kPa; `[n_taxels][n_frames]`.
     pub(crate) readings_kpa: Vec<Vec<f64>>,
-    /// Weight of each reading, over the largest reading of its mounting; `[n_taxels][n_frames]`
+    /// Weight of each reading, over the largest reading of its installation;
+    /// `[n_taxels][n_frames]`.
     pub(crate) weights: Vec<Vec<f64>>,
-    /// One over the largest reading of the frame's mounting; `[n_frames]`
+    /// Inverse of the largest reading of the frame's installation; `[n_frames]`.
     pub(crate) per_kpa: Vec<f64>,
 }
 
 impl Series {
-    /// Presses of one mounting must stand together, in the order of time. Weights add up to one over all taxels that are not left out.
+    /// Presses of one installation must be next to each other, in the order of time. Weights add up
+    /// to one over all taxels that are not excluded.
     pub(crate) fn new(presses: &[Fitted<'_>], n_taxels: usize, left_out: &BTreeSet<usize>) -> Self {
         let mut series = Self {
             since_s: Vec::new(),
@@ -113,7 +117,8 @@ impl Series {
         self.since_s.len()
     }
 
-    /// Takes the mean over each press's zero frames from the press; `values` belong to the frames of `range`, which covers whole presses.
+    /// Subtracts from each press the mean over its zero frames. `values` belong to the frames of
+    /// `range`, which covers whole presses.
     pub(crate) fn set_to_zero(&self, range: &Range<usize>, values: &mut [f64]) {
         let first = self.presses.partition_point(|press| press.start < range.start);
         for (press, zero) in self.presses[first..].iter().zip(&self.zeros[first..]) {
@@ -133,7 +138,7 @@ impl Series {
     }
 }
 
-/// Largest usable reading of the presses that are used, by mounting.
+/// Largest usable reading of the presses that are used, by installation.
 fn largest_by_mounting<'a>(presses: &'a [Fitted<'_>], left_out: &BTreeSet<usize>) -> BTreeMap<&'a str, f64> {
     let mut largest_kpa: BTreeMap<&str, f64> = BTreeMap::new();
     for press in presses.iter().filter(|press| press.is_used) {

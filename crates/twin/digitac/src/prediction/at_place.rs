@@ -1,11 +1,12 @@
-//! A twin whose sensor is pressed at one place, stepped with poses.
+//! A twin whose sensor is pressed at one location, stepped with poses.
 
 use twintac_depth_table::{DepthCurves, DepthTable};
 use twintac_shape::Pose;
 
 use crate::{BenchEstimate, Certainty, Contact, DigitacError, PortCorrection, Twin, TwinState, Variant};
 
-/// A twin in use whose sensor is pressed at one place: what its gel shows at a depth is read from the place's table. Steps allocate nothing.
+/// A twin in use whose sensor is pressed at one location. The pressures in its gel at a depth are
+/// read from the location's table. Steps allocate no memory.
 #[derive(Clone, Debug)]
 pub struct TwinAtPlace {
     state: TwinState,
@@ -13,23 +14,23 @@ pub struct TwinAtPlace {
     correction: PortCorrection,
     touch_z_mm: f64,
     contact_offset_mm: f64,
-    /// What the gel shows; `[n_taxels]`.
+    /// The twin's input: pressures at the ports, kPa, or stress features, kPa/mm; `[n_taxels]`.
     seen: Vec<f64>,
     force_n: f64,
     sureness: Option<Sureness>,
 }
 
-/// How sure the twin is of the last frame.
+/// Uncertainty of the last frame.
 #[derive(Clone, Debug)]
 struct Sureness {
     certainty: Certainty,
     contact: Contact,
     unlikeness: f64,
-    /// The last readings, kPa; `[n_taxels]`; empty before the first frame.
+    /// The last readings, kPa; `[n_taxels]`.
     before_kpa: Vec<f64>,
-    /// Their changes, kPa/s; `[n_taxels]`.
+    /// Their rates of change, kPa/s; `[n_taxels]`.
     rates_kpa_per_s: Vec<f64>,
-    /// `[n_taxels]`
+    /// Half widths of their intervals, kPa; `[n_taxels]`.
     half_widths_kpa: Vec<f64>,
     has_begun: bool,
 }
@@ -59,11 +60,12 @@ impl Sureness {
 }
 
 impl TwinAtPlace {
-    /// A twin that nothing touches, at the place of a table over depth. The contact height is that of a mounting of the bench's recordings, or
-    /// for any other the median. What an untouched sensor reads is zero.
+    /// A twin without contact, at the location of a table over depth. The contact height is that of
+    /// an installation in the recordings of the test setup, or the median for any other. The
+    /// readings of a sensor without contact are zero.
     ///
     /// # Errors
-    /// A table that can't be used.
+    /// A table that cannot be used.
     pub fn new(
         twin: &Twin,
         table: &DepthTable,
@@ -88,7 +90,7 @@ impl TwinAtPlace {
         })
     }
 
-    /// The same with a twin that says how sure it is, of a contact at this place.
+    /// The same with the uncertainty of a contact at this location.
     #[must_use]
     pub(crate) fn with_certainty(self, certainty: &Certainty, contact: Contact) -> Self {
         let zeros = vec![0.0; self.seen.len()];
@@ -106,11 +108,12 @@ impl TwinAtPlace {
         }
     }
 
-    /// One more frame: from a depth below first touch, mm, negative above the gel, to what the barometers would read, kPa; `[n_taxels]`.
-    /// `since_previous_s` is the time since the last frame, s, of which the first takes no notice.
+    /// One more frame: from a depth below first touch, mm, negative above the gel, to the readings
+    /// of the barometers, kPa; `[n_taxels]`. `since_previous_s` is the time since the last frame,
+    /// s; the first frame ignores it.
     ///
     /// # Panics
-    /// Readings of another length.
+    /// If `readings_kpa` has a wrong length.
     pub fn step(&mut self, since_previous_s: f64, depth_mm: f64, readings_kpa: &mut [f64]) {
         let depth_mm = depth_mm + self.contact_offset_mm;
         self.force_n = self.curves.force_n(depth_mm);
@@ -135,15 +138,16 @@ impl TwinAtPlace {
         }
     }
 
-    /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
+    /// Half widths of the 90 % intervals around the last readings, kPa; `[n_taxels]`. `None` for a
+    /// twin without intervals.
     #[must_use]
     pub fn half_width_kpa(&self) -> Option<&[f64]> {
         let sureness = self.sureness.as_ref()?;
         Some(&sureness.half_widths_kpa)
     }
 
-    /// How unlike the contact of the last frame is to what taught the twin, and whether it is too unlike for readings and intervals to be trusted; `None` of a twin that
-    /// does not know.
+    /// OOD score of the contact of the last frame, and whether the contact is out of distribution,
+    /// so that readings and intervals cannot be trusted. `None` for a twin without intervals.
     #[must_use]
     pub fn unlikeness(&self) -> Option<(f64, bool)> {
         let sureness = self.sureness.as_ref()?;
@@ -153,7 +157,8 @@ impl TwinAtPlace {
         ))
     }
 
-    /// One more frame, from the indenter's pose in the gel's frame. Its height counts alone: place and turn are the table's.
+    /// One more frame, from the indenter's pose in the gel's frame. Only its height counts:
+    /// location and rotation are those of the table.
     ///
     /// # Panics
     /// As [`step`](Self::step).
@@ -168,13 +173,14 @@ impl TwinAtPlace {
         self.force_n
     }
 
-    /// Depth below first touch at which the table ends, mm; deeper, its last pressures stand.
+    /// Depth below first touch at which the table ends, mm. Its last pressures are used at larger
+    /// depths.
     #[must_use]
     pub fn max_depth_mm(&self) -> f64 {
         self.curves.max_depth_mm() - self.contact_offset_mm
     }
 
-    /// Takes what is read now as zero, as a tare of a real sensor does.
+    /// Sets the present readings to zero, as a tare of a real sensor does.
     pub fn tare(&mut self) {
         self.state.tare();
     }

@@ -1,4 +1,5 @@
-//! What a sensor would read: frame by frame, and along whole presses, which go through the same steps.
+//! Predicted readings of a sensor: frame by frame, and along whole presses, which go through the
+//! same steps.
 
 mod at_place;
 mod planned;

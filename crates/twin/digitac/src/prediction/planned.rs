@@ -1,4 +1,4 @@
-//! What barometers would read along presses that nobody has made yet.
+//! Predicted readings along planned presses.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use crate::{
     TwinAtPlace, features,
 };
 
-/// What a twin would read along a press. All vectors have the same length, `n_frames`.
+/// Predicted readings along a press. All vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// The press's name.
@@ -21,25 +21,28 @@ pub struct Prediction {
     pub indenter: String,
     /// Time since the start of the press, s.
     pub time_s: Vec<f64>,
-    /// Place of the indenter's origin in the gel's plane, mm; `[n_frames][2]`.
+    /// Location of the indenter's origin in the gel's plane, mm; `[n_frames][2]`.
     pub place_mm: Vec<[f64; 2]>,
-    /// Depth below first touch, mm, with the height at which the bench of the recordings touched; negative above the gel.
+    /// Depth below first touch, mm, with the contact height of the recordings' test setup; negative
+    /// above the gel.
     pub depth_mm: Vec<f64>,
     /// Force of the indenter on the gel, N.
     pub force_n: Vec<f64>,
-    /// What the barometers would read above what they read untouched, kPa; `[n_frames][n_taxels]`.
+    /// Predicted readings above those without contact, kPa; `[n_frames][n_taxels]`.
     pub readings_kpa: Vec<Vec<f64>>,
-    /// Whether the frame was simulated: not deeper than the gel could be pressed, whose last pressures stand for what is deeper.
+    /// Whether the frame was simulated: it is not deeper than the gel could be pressed in the
+    /// simulation. The last simulated pressures are used for deeper frames.
     pub simulated: Vec<bool>,
-    /// How sure the twin is; `None` of a twin that does not know.
+    /// Uncertainty of the readings; `None` for a twin without intervals.
     pub certainty: Option<PressCertainty>,
 }
 
-/// Steps a twin along planned presses, each from rest, with so many frames a second. The gel at their places comes from `source`; the bench
-/// is as it was found. `certainty` says how sure the twin is.
+/// Steps a twin along planned presses, each from rest, at a frame rate. The gel at their locations
+/// comes from `source`, and `bench` is the estimate of the test setup. `certainty` gives the
+/// uncertainty.
 ///
 /// # Errors
-/// An indenter that the source does not know; a place that it cannot press.
+/// An indenter that the source does not know; a location that it cannot press.
 pub fn predict(
     (twin, certainty): (&Twin, Option<&Certainty>),
     bench: &BenchEstimate,
@@ -51,7 +54,7 @@ pub fn predict(
     along((twin, certainty), bench, source, plans, &unread)
 }
 
-/// The planned presses as ones that were made, without readings.
+/// The planned presses in the form of recorded ones, without readings.
 fn unread(
     twin: &Twin,
     source: &dyn DepthTableSource,
@@ -109,7 +112,8 @@ fn along(
     Ok(plans.iter().zip(along).enumerate().map(predict).collect())
 }
 
-/// The same as a recording, for whatever learns from recordings: readings are the twin's, and what was not simulated counts as unusable.
+/// As [`predict`], in the form of a recording, for code that learns from recordings. Readings are
+/// those of the twin. Frames that were not simulated count as unusable.
 ///
 /// # Errors
 /// Those of [`predict`].
@@ -141,11 +145,12 @@ pub fn simulated_recording(
     Ok(recording(twin, presses.collect()))
 }
 
-/// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
-/// it was found. `certainty` says how sure the twin is.
+/// A twin without contact, at the location of a planned press and down to its depth. The gel there
+/// comes from `source`, and `bench` is the estimate of the test setup. `certainty` gives the
+/// uncertainty.
 ///
 /// # Errors
-/// An indenter that the source does not know; a place that it cannot press.
+/// An indenter that the source does not know; a location that it cannot press.
 pub fn at_place(
     (twin, certainty): (&Twin, Option<&Certainty>),
     bench: &BenchEstimate,
@@ -187,10 +192,11 @@ fn recording(twin: &Twin, presses: Vec<Press>) -> Recording {
     }
 }
 
-/// A planned press as one that was made, without readings, and the indenter where it touches first. `trajectory` is time, s, and depth below first touch, mm.
+/// A planned press in the form of a recorded one, without readings, and the pose of the indenter at
+/// first touch. `trajectory` has time, s, and depth below first touch, mm.
 ///
 /// # Errors
-/// An indenter that the source does not know; a place where it misses the gel.
+/// An indenter that the source does not know; a location where it misses the gel.
 pub fn unread_press(
     plan: &PressPlan,
     trajectory: &[(f64, f64)],

@@ -1,36 +1,37 @@
-//! A twin in use: what it remembers of the frames before, and what it reads next.
+//! A twin in use: its state from earlier frames, and its next readings.
 
 use crate::features::{Remembered, along, is_pressure};
 use crate::network::ElasticRows;
 use crate::{Features, Twin};
 
-/// Sensors whose elastic readings are computed at once: their layers stay in the processor's cache.
+/// Number of sensors whose elastic readings are computed at once: their layers stay in the
+/// processor's cache.
 const MOST_ROWS: usize = 64;
 
-/// A twin of one sensor in use, or of many that are stepped together. It keeps what their gels remember, and their zeros. A copy goes on
-/// from the same moment.
+/// A twin of one sensor in use, or of many sensors that are stepped together. It keeps the
+/// relaxation of their gels and their zeros. A copy continues from the same moment.
 ///
-/// Steps read the same numbers as [`Twin::predict`] along whole presses, to the last bit; so does each of many sensors that are stepped
-/// together, in whatever order. They allocate nothing. All work is done by the calling thread: to use more, give each thread sensors of
-/// its own.
+/// Steps give the same numbers as [`Twin::predict`] along whole presses, bit for bit. So does each
+/// of many sensors that are stepped together, in any order. Steps allocate no memory. The calling
+/// thread does all work; to use more threads, give each thread its own sensors.
 #[derive(Clone, Debug)]
 pub struct TwinState {
     twin: Twin,
-    /// `[n_taxels]`
+    /// Gains of the elastic readings; `[n_taxels]`.
     gains: Vec<f32>,
     rows: ElasticRows,
     remembered: Remembered,
-    /// The last readings, with no zero taken off, kPa; `[n_sensors * n_taxels]`.
+    /// The last readings before the zero is subtracted, kPa; `[n_sensors * n_taxels]`.
     untared_kpa: Vec<f64>,
-    /// What is read as zero, kPa; `[n_sensors * n_taxels]`.
+    /// Zeros of the readings, kPa; `[n_sensors * n_taxels]`.
     zero_kpa: Vec<f64>,
 }
 
-/// What the gel of one sensor remembers, and what it reads as zero: see [`TwinState::memory`].
+/// Relaxation and zero of one sensor: see [`TwinState::memory`].
 #[derive(Clone, Debug)]
 pub struct TwinMemory {
     remembered: Remembered,
-    /// `[n_taxels]`
+    /// The last readings before the zero is subtracted, kPa; `[n_taxels]`.
     untared_kpa: Vec<f64>,
     zero_kpa: Vec<f64>,
 }
@@ -42,7 +43,7 @@ impl Twin {
         self.states(1)
     }
 
-    /// Twins of so many sensors, whose gels have rested.
+    /// Twins of `n_sensors` sensors, whose gels have rested.
     #[must_use]
     pub fn states(&self, n_sensors: usize) -> TwinState {
         let n_readings = n_sensors * self.taxels().len();
@@ -56,8 +57,9 @@ impl Twin {
         }
     }
 
-    /// What the barometers would read above their unloaded baseline along simulated presses, kPa; `[n_presses][n_frames][n_taxels]`.
-    /// Readings are zero, in the mean, over [`Features::zero_frames`]. The gel remembers presses that follow each other: see
+    /// Predicted readings above their unloaded baseline along simulated presses, kPa;
+    /// `[n_presses][n_frames][n_taxels]`. Their mean is zero over [`Features::zero_frames`].
+    /// Relaxation goes on between presses that follow each other: see
     /// [`Features::since_previous_s`].
     #[must_use]
     pub fn predict(&self, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
@@ -75,17 +77,22 @@ impl Twin {
 }
 
 impl TwinState {
-    /// One more frame of every sensor: from what the simulated gel shows to what the barometers would read, kPa.
+    /// One more frame of every sensor: from the simulated gel to the predicted readings, kPa.
     ///
-    /// - `since_previous_s`: time since the last frame, s, not negative. Sensors whose gel has rested until now take no notice of it.
-    /// - `seen`: hydrostatic pressure at each port, kPa; for [`Variant::Paper`](crate::Variant::Paper) the stress feature above each
-    ///   taxel, kPa/mm. `[n_sensors * n_taxels]`, sensor by sensor.
-    /// - `readings_kpa`: is written; above the zero that was last set, or above what the twin calls zero. `[n_sensors * n_taxels]`.
+    /// - `since_previous_s`: time since the last frame, s, not negative. Sensors whose gel has
+    ///   rested until now ignore it.
+    /// - `seen`: hydrostatic pressure at each port, kPa; for
+    ///   [`Variant::Paper`](crate::Variant::Paper) the stress feature above each taxel, kPa/mm.
+    ///   `[n_sensors * n_taxels]`, sensor by sensor.
+    /// - `readings_kpa`: the output, above the zero that was last set, or else above the twin's own
+    ///   zero. `[n_sensors * n_taxels]`.
     ///
-    /// What is not a pressure (NaN, infinite, or beyond 1 GPa) is read as NaN, in this frame alone: the gel remembers that nothing changed. Where a perceptron
-    /// sees all ports, all taxels of the sensor are.
+    /// A value that is not a pressure (NaN, infinite, or beyond 1 GPa) is read as NaN, in this
+    /// frame alone; the state is kept as if nothing had changed. If the variant has a perceptron,
+    /// whose inputs are all ports, all taxels of the sensor are read as NaN.
     ///
     /// # Panics
+    /// If slices have wrong lengths, or the time is negative or NaN.
     /// Slices of another length; a time that is negative or NaN.
     pub fn step(&mut self, since_previous_s: f64, seen: &[f64], readings_kpa: &mut [f64]) {
         assert!(since_previous_s >= 0.0, "a time that does not run backwards");
@@ -96,7 +103,7 @@ impl TwinState {
             "pressures and readings of all taxels of all sensors"
         );
         let chunk = MOST_ROWS * self.gains.len().max(1);
-        // The odd ones first: what comes last is as many as there is room for.
+        // The remainder comes first, so that the last chunk has the full number of rows.
         let odd = n_readings % chunk;
         let (seen_first, seen_rest) = seen.split_at(odd);
         let (readings_first, readings_rest) = readings_kpa.split_at_mut(odd);
@@ -141,12 +148,13 @@ impl TwinState {
         }
     }
 
-    /// Takes what was last read as zero, as a tare of a real sensor does. Before the first frame it does nothing.
+    /// Sets the last readings to zero, as a tare of a real sensor does. Before the first frame it
+    /// does nothing.
     pub fn tare(&mut self) {
         self.zero_kpa.copy_from_slice(&self.untared_kpa);
     }
 
-    /// Takes what a sensor that nothing touches reads as zero.
+    /// Sets the readings of sensors without contact to zero.
     pub fn tare_untouched(&mut self) {
         let mut untouched = self.twin.state();
         let mut zero_kpa = vec![0.0; self.gains.len()];
@@ -159,15 +167,15 @@ impl TwinState {
     /// Lets the gel of one sensor, counted from 0, rest until its next frame. Its zero stays.
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If the sensor does not exist.
     pub fn rest(&mut self, sensor: usize) {
         self.remembered.rest(sensor);
     }
 
-    /// What one sensor, counted from 0, remembers now.
+    /// Relaxation and zero of one sensor, counted from 0.
     ///
     /// # Panics
-    /// A sensor that is not there.
+    /// If the sensor does not exist.
     #[must_use]
     pub fn memory(&self, sensor: usize) -> TwinMemory {
         let own = self.taxels(sensor);
@@ -178,11 +186,11 @@ impl TwinState {
         }
     }
 
-    /// Lets one sensor, counted from 0, go on from a memory of the same twin.
+    /// Lets one sensor, counted from 0, continue from a state of the same twin.
     ///
     /// # Panics
-    /// A sensor that is not there, a memory of a twin of another number of taxels or time
-    /// constants.
+    /// If the sensor does not exist, or if the state belongs to a twin with another number of
+    /// taxels or time constants.
     pub fn set_memory(&mut self, sensor: usize, memory: &TwinMemory) {
         let own = self.taxels(sensor);
         self.remembered.set_sensor(sensor, &memory.remembered);

@@ -1,4 +1,4 @@
-//! Steps against whole presses, to the last bit.
+//! Compares steps with whole presses, bit for bit.
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use crate::{
 
 const N_TAXELS: usize = 3;
 
-/// A twin of random weights.
+/// A twin with random weights.
 fn twin(variant: Variant, seed: u64, n_taxels: usize) -> Twin {
     let each = |values: [f64; 3]| values.into_iter().cycle().take(n_taxels).collect();
     let physics = Physics {
@@ -41,7 +41,7 @@ fn twin(variant: Variant, seed: u64, n_taxels: usize) -> Twin {
     Twin::new(vec![String::new(); n_taxels], physics, parameters)
 }
 
-/// Frames at rest at first, then of random pressures.
+/// Frames at rest at first, then with random pressures.
 fn press() -> impl Strategy<Value = Features> {
     let frame = (0.0..0.3_f64, prop::array::uniform3(-5.0..60.0_f64));
     let frames = prop::collection::vec(frame, 1..40);
@@ -70,7 +70,7 @@ fn press() -> impl Strategy<Value = Features> {
     })
 }
 
-/// The readings as matrices of whole presses give them.
+/// The readings computed by matrices of whole presses.
 fn by_matrices(twin: &Twin, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
     let (physics, parameters) = (twin.physics(), twin.parameters());
     let elastic = |press: &&Features| {
@@ -97,7 +97,7 @@ proptest! {
             prop_assert_eq!(&whole, &by_matrices(&twin, &presses), "{}", variant);
             let mut state = twin.state();
             let mut readings_kpa = [0.0; N_TAXELS];
-            // The first rests, as it starts from rest: a tare there is the zero of the whole press.
+            // The first press starts at rest, so a tare there is the zero of the whole press.
             let press = presses[0];
             for (frame, expected) in whole[0].iter().enumerate() {
                 let since_s = if frame > 0 { press.time_s[frame] - press.time_s[frame - 1] } else { 1.0 };
@@ -248,7 +248,7 @@ fn poses_at_a_place_read_what_the_whole_press_reads() {
     }
 }
 
-/// What is not a pressure, or no reading.
+/// Values that are neither a pressure nor a reading.
 const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e39, -1e300, 2e6];
 
 #[test]
@@ -272,7 +272,7 @@ fn what_is_not_a_pressure_is_read_as_nan_in_its_frame_alone() {
                 if frame == at {
                     assert!(read[1].is_nan(), "{variant} {bad}: {read:?}");
                     if at == 0 {
-                        continue; // the gel begins to be seen a frame later
+                        continue; // the state starts one frame later
                     }
                 }
                 held.step(0.02, &good, &mut expected);
@@ -281,7 +281,7 @@ fn what_is_not_a_pressure_is_read_as_nan_in_its_frame_alone() {
                         read.iter().all(|kpa| kpa.is_finite()),
                         "{variant} {bad}: {read:?}"
                     );
-                    // The taxel remembers what it read before.
+                    // The state of the taxel is that of the frame before.
                     assert_eq!(read[1], expected[1], "{variant} {bad}, frame {frame}");
                 }
             }
@@ -312,7 +312,7 @@ fn what_is_no_reading_is_nothing_in_its_frame_alone() {
             assert_eq!(readings[2].is_nan(), frame == 3, "{bad}: {readings:?}");
             assert!(readings[0].is_finite() && readings[1].is_finite());
         }
-        // Where the untouched frame is missing, the next one is taken.
+        // If the frame without contact is missing, the next one is used.
         relaxed.tare();
         let mut readings = [7.0, bad, 7.0];
         relaxed.step(0.02, &mut readings);

@@ -1,33 +1,35 @@
-//! The memory of barometers, taken off what they read.
+//! Removal of viscoelastic relaxation from the readings of barometers.
 //!
-//! A barometer reads `r + Σ c q` above its zero, where the overstresses `q` follow its own relaxed reading `r` and nothing else. So what is read tells `r`,
-//! taxel by taxel and frame by frame, whatever touches the gel.
+//! A barometer reads `r + Σ c q` above its zero. The overstresses `q` follow its own relaxed
+//! reading `r` and nothing else. Readings therefore determine `r`, taxel by taxel and frame by
+//! frame, for any contact.
 
 use crate::Twin;
 use crate::features::{is_pressure, overstress_step};
 
-/// Turns readings as they come into those of a gel that has always rested: what a [`TwinState`](crate::TwinState) reads in its first frame after
-/// [`rest`](crate::TwinState::rest). Frames allocate nothing.
+/// Turns readings, as they come, into those of a gel that has always rested: the readings of a
+/// [`TwinState`](crate::TwinState) in its first frame after [`rest`](crate::TwinState::rest).
+/// Frames allocate no memory.
 ///
-/// It needs no tare: the first frame is that of an untouched sensor, and so is every frame that [`settle`](Self::settle) is called after. The zero
-/// follows those.
+/// It needs no tare: the first frame must be without contact, and so must every frame after which
+/// [`settle`](Self::settle) is called. The zero follows these frames.
 #[derive(Clone, Debug)]
 pub struct WithoutMemory {
     /// Share of each overstress in the reading; `[n_taxels][n_time_constants]`.
     shares: Vec<Vec<f64>>,
     time_constants_s: Vec<f64>,
-    /// Whether the next reading is of an untouched sensor; `[n_taxels]`.
+    /// Whether the next reading is without contact; `[n_taxels]`.
     is_untouched: Vec<bool>,
-    /// `[n_taxels]`
+    /// Zeros, kPa; `[n_taxels]`.
     zero_kpa: Vec<f64>,
-    /// `[n_taxels]`
+    /// Relaxed readings of the last frame, kPa; `[n_taxels]`.
     relaxed_kpa: Vec<f64>,
-    /// `[n_taxels][n_time_constants]`
+    /// Overstresses, kPa; `[n_taxels][n_time_constants]`.
     overstress_kpa: Vec<Vec<f64>>,
 }
 
 impl Twin {
-    /// Takes the twin's memory off the readings of a sensor whose gel has rested.
+    /// Removes the twin's relaxation from the readings of a sensor whose gel has rested.
     #[must_use]
     pub fn without_memory(&self) -> WithoutMemory {
         let gains = self.gains();
@@ -46,13 +48,16 @@ impl Twin {
 }
 
 impl WithoutMemory {
-    /// One more frame: readings, kPa above anything that stays the same, become those of the relaxed gel above its zero. `[n_taxels]`
+    /// One more frame: readings, kPa, with any constant offset, become those of the relaxed gel
+    /// above its zero; `[n_taxels]`.
     ///
-    /// `since_previous_s` is the time since the last frame, s, not negative. What is no reading (NaN, infinite, or beyond 1 GPa) becomes NaN, in this frame alone: the
-    /// gel remembers that nothing changed. A taxel that should have been untouched in such a frame takes its zero in its next one.
+    /// `since_previous_s` is the time since the last frame, s, not negative. A value that is not a
+    /// reading (NaN, infinite, or beyond 1 GPa) becomes NaN, in this frame alone; the state is kept
+    /// as if nothing had changed. If it should have been a reading without contact, the taxel takes
+    /// its zero from the next frame.
     ///
     /// # Panics
-    /// Readings of another length; a time that is negative or NaN.
+    /// If `readings_kpa` has a wrong length, or the time is negative or NaN.
     pub fn step(&mut self, since_previous_s: f64, readings_kpa: &mut [f64]) {
         assert_eq!(
             readings_kpa.len(),
@@ -88,7 +93,8 @@ impl WithoutMemory {
         }
     }
 
-    /// Nothing touched the sensor in the last frame: the zero moves by a part, from 0 to 1, of the way to what was read.
+    /// Tells that the last frame was without contact: the zero moves by a fraction, from 0 to 1, of
+    /// the way to the readings.
     pub fn settle(&mut self, part: f64) {
         for (zero, relaxed) in self.zero_kpa.iter_mut().zip(&mut self.relaxed_kpa) {
             *zero += part * *relaxed;
@@ -96,8 +102,8 @@ impl WithoutMemory {
         }
     }
 
-    /// The next frame is of an untouched sensor, and what stays the same in readings may be another: a recording goes on elsewhere. What the gel
-    /// remembers stays.
+    /// Tells that the next frame is without contact and that the offset of the readings may be
+    /// another, for example where a recording continues elsewhere. The state of relaxation stays.
     pub fn tare(&mut self) {
         self.is_untouched.fill(true);
     }

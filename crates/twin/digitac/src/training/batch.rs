@@ -11,24 +11,24 @@ use twintac_learn::Matrix;
 /// Presses side by side, padded to the longest.
 pub(crate) struct Batch {
     n_frames: usize,
-    /// `[n_presses * n_frames][n_taxels]`
+    /// Inputs of order one; `[n_presses * n_frames][n_taxels]`.
     inputs: Matrix,
-    /// Over the largest reading; `[n_presses * n_frames][n_taxels]`
+    /// Readings over the largest reading; `[n_presses * n_frames][n_taxels]`.
     targets: Vec<f32>,
-    /// One where a reading counts; `[n_presses * n_frames][n_taxels]`
+    /// 1 where a reading counts, else 0; `[n_presses * n_frames][n_taxels]`.
     mask: Vec<f32>,
     n_counted: f64,
-    /// Relative growth of the elastic readings; `[n_taxels]`, none for the paper's variant.
+    /// Relative growth of the elastic readings; `[n_taxels]`, empty for the paper's variant.
     stiffening: Vec<f64>,
-    /// From the elastic readings of each press to its overstresses, `[n_time_constants * n_frames][n_frames]`; empty if the variant has no
-    /// memory.
+    /// Matrices from the elastic readings of each press to its overstresses, `[n_time_constants *
+    /// n_frames][n_frames]`; empty if the variant has no relaxation.
     operators: Vec<Matrix>,
 }
 
-/// Deviation of the noise on what a perceptron sees, with its stream.
+/// Standard deviation of the noise on the perceptron's inputs, with its random stream.
 pub(crate) type Noise<'a> = (f64, &'a mut RandomStream);
 
-/// What the loss is computed with, for its gradient.
+/// Values of the loss's computation that its gradient needs.
 struct Forward {
     pass: Pass,
     /// Readings minus targets.
@@ -40,7 +40,8 @@ struct Forward {
 }
 
 impl Batch {
-    /// Gathers presses, of which only every so many frames are used if they are longer than `max_frames`.
+    /// Collects presses. Of presses that are longer than `max_frames`, frames are used at equal
+    /// intervals.
     pub(crate) fn new(physics: &Physics, presses: &[&PairedPress], max_frames: usize) -> Self {
         let thinned: Vec<PairedPress> = presses.iter().map(|press| thin(press, max_frames)).collect();
         let n_frames = thinned
@@ -89,7 +90,7 @@ impl Batch {
         }
     }
 
-    /// How many readings count.
+    /// Number of readings that count.
     pub(crate) fn n_counted(&self) -> f64 {
         self.n_counted
     }
@@ -99,7 +100,7 @@ impl Batch {
         self.mean_deviation(&self.forward(parameters, physics, &self.inputs))
     }
 
-    /// The loss, with noise on what the perceptron sees, and its gradient.
+    /// The loss, with noise on the perceptron's inputs, and its gradient.
     pub(crate) fn loss_and_gradient(
         &self,
         parameters: &Parameters,
@@ -174,7 +175,7 @@ impl Batch {
             n_columns: n_taxels,
         };
         let mut of_elastic = of_readings.clone();
-        // Over the presses first, then over the frames.
+        // Sums over the presses first, then over the frames.
         let mut of_shares = vec![0.0; forward.shares.len() * self.n_frames];
         for (index, (operator, overstress)) in self.operators.iter().zip(&forward.overstresses).enumerate() {
             let press = index * n_values..(index + 1) * n_values;
@@ -223,12 +224,13 @@ impl Batch {
     }
 }
 
-/// The slope of an absolute value; 0 at 0.
+/// The derivative of an absolute value; 0 at 0.
 fn sign(value: f32) -> f32 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
 
-/// From the elastic readings of a press of at most `n_frames` frames to its overstresses, padded with zeros.
+/// Matrix from the elastic readings of a press with at most `n_frames` frames to its overstresses,
+/// padded with zeros.
 fn operator(time_s: &[f64], time_constants_s: &[f64], n_frames: usize) -> Matrix {
     let mut operator = Matrix::zeros(time_constants_s.len() * n_frames, n_frames);
     let blocks = operator.values.chunks_exact_mut(n_frames * n_frames);
@@ -270,7 +272,7 @@ pub(crate) fn thin(press: &PairedPress, max_frames: usize) -> PairedPress {
     }
 }
 
-/// Cuts indices into shuffled batches of about the same size.
+/// Divides indices into shuffled batches of about equal size.
 pub(crate) fn batches(indices: &[usize], size: usize, seed_number: u64) -> Vec<Vec<usize>> {
     let mut shuffled = indices.to_vec();
     shuffled.shuffle(&mut seed::stream(seed_number, "batches"));
@@ -307,8 +309,8 @@ mod tests {
         }
     }
 
-    /// A press of `n_frames` whose features wander, two taxels. Its readings are far from any prediction, on both sides: the loss has a corner
-    /// where they meet.
+    /// A press of `n_frames` with varying features, two taxels. Its readings are far from any
+    /// prediction, on both sides, because the loss has a corner where they are equal.
     fn press(n_frames: usize, phase: f64) -> PairedPress {
         let wave = |i: usize, shift: f64| 1.0 + (0.7 * i as f64 + phase + shift).sin();
         let frames: Vec<_> = (0..n_frames)

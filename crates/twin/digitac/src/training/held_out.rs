@@ -1,4 +1,4 @@
-//! What a twin is judged on: ways to hold presses out.
+//! Ways to hold presses out for the evaluation of a twin.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,16 +11,17 @@ use super::{Split, SplitSettings};
 use crate::bench_fit::deepest_pose;
 use crate::{DigitacError, seed};
 
-/// Presses at least this near to the deepest fifth in depth belong to it, mm: commanded depths differ by less.
+/// Presses belong to the deepest fifth also if they are within this of it in depth, mm; commanded
+/// depths differ by less.
 const SAME_DEPTH_MM: f64 = 0.05;
 
 /// What is held out together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum HeldOut {
-    /// Single presses, drawn at random: others at the same place may teach.
+    /// Single presses, drawn at random. Other presses at the same location may be training presses.
     Press,
-    /// All presses of a place, between places that teach.
+    /// All presses of a location that lies between training locations.
     Place,
     /// All presses of a file, one file after the other.
     File,
@@ -28,14 +29,14 @@ pub enum HeldOut {
     Indenter,
     /// The deepest fifth of the presses of each indenter.
     Depth,
-    /// The outermost third along the longer side of what was pressed, one end after the other.
+    /// The outermost third along the longer side of the pressed region, one end after the other.
     Region,
     /// All readings of a taxel, one taxel after the other; its gain comes from one press.
     Taxel,
 }
 
 impl HeldOut {
-    /// All of them.
+    /// All ways.
     pub const ALL: [Self; 7] = [
         Self::Press,
         Self::Place,
@@ -84,16 +85,17 @@ impl std::str::FromStr for HeldOut {
 pub struct Fold {
     /// What is held out together.
     pub by: HeldOut,
-    /// Which file, indenter, end or taxel; empty if presses were drawn.
+    /// The held-out file, indenter, end or taxel; empty if presses were drawn.
     pub held_out: String,
     /// The division.
     pub split: Split,
-    /// The taxel whose readings teach nothing, if one is held out.
+    /// The taxel whose readings are not used for training, if one is held out.
     pub taxel: Option<usize>,
 }
 
 impl Fold {
-    /// The divisions of a recording for one seed: several if it is held out by name. Taxels in `left_out` are not held out.
+    /// The divisions of a recording for one seed: several if files, indenters, ends or taxels are
+    /// held out one after the other. Taxels in `left_out` are not held out.
     ///
     /// # Errors
     /// Too few presses, files or indenters.
@@ -157,7 +159,7 @@ fn one_by_one(
     }
     if groups.len() < 2 {
         return Err(DigitacError::TooFew {
-            expected: format!("two of what is held out by {by}"),
+            expected: format!("two groups to hold out by {by}"),
             found: groups.len().to_string(),
         });
     }
@@ -202,7 +204,8 @@ fn deepest(recording: &Recording) -> Result<BTreeSet<usize>, DigitacError> {
     Ok(deepest)
 }
 
-/// The presses of the outermost third at either end, along the axis on which places are spread the most.
+/// The presses of the outermost third at either end, along the axis with the largest range of
+/// locations.
 fn ends(recording: &Recording) -> Result<[BTreeSet<usize>; 2], DigitacError> {
     let places: Vec<[f64; 2]> = recording
         .presses
@@ -268,7 +271,7 @@ mod tests {
             (&SplitSettings::default(), 1),
             &BTreeSet::new(),
         );
-        assert!(all.unwrap_err().to_string().contains("held out by indenter"));
+        assert!(all.unwrap_err().to_string().contains("hold out by indenter"));
     }
 
     #[test]

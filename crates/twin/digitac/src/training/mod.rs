@@ -1,4 +1,5 @@
-//! Training: which presses are used for training, validation and test, how the parameters of each variant are learned, and which variant is chosen.
+//! Training: division of presses into training, validation and test presses, training of each
+//! variant, and selection of a variant.
 
 mod batch;
 mod held_out;

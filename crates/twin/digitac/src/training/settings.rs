@@ -1,4 +1,4 @@
-//! How variants are trained.
+//! Settings of the training.
 
 use std::collections::BTreeSet;
 
@@ -8,50 +8,52 @@ use twintac_config::{Checked, Ranges};
 use crate::Variant;
 use crate::features::{TIME_CONSTANTS_S, check_time_constants};
 
-/// Hidden layers of a perceptron, and their width, at most.
+/// Largest number of hidden layers of a perceptron, and their largest width.
 pub(crate) const MOST_LAYERS: usize = 8;
 pub(crate) const MOST_WIDTH: f64 = 1024.0;
 
-/// How variants are trained. Loss, optimizer, rate, its decay, clipping and noise are the TwinTac paper's
-/// (arXiv 2509.10063, section III-C).
+/// Settings of the training. Loss, optimizer, learning rate, its decay, clipping and noise are
+/// those of the TwinTac paper (arXiv 2509.10063, section III-C).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrainSettings {
-    /// What to train. Default: all variants; on a fast gel without the paper's, which reads stresses.
+    /// The variants to train. Default: all; on a surrogate of the gel (`FastGel`) all except the
+    /// paper's, which needs stresses.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variants: Option<Vec<Variant>>,
-    /// Passes over the training presses, at most.
+    /// Largest number of passes over the training presses.
     pub epochs: usize,
     /// Initial learning rate.
     pub learning_rate: f64,
     /// Factor on the learning rate when the validation loss stops falling.
     pub rate_factor: f64,
-    /// Epochs without a better validation loss before the rate falls.
+    /// Epochs without a better validation loss after which the learning rate falls.
     pub patience: usize,
-    /// Epochs without a better validation loss before training stops.
+    /// Epochs without a better validation loss after which training stops.
     pub stop_patience: usize,
-    /// Largest norm of the gradient, over all parameters together.
+    /// Largest norm of the gradient of all parameters together.
     pub gradient_norm: f64,
-    /// AdamW's decay of weights: it pulls physical variants back to the fitted physics.
+    /// Weight decay of AdamW. It regularizes physical variants towards the fitted physics.
     pub weight_decay: f64,
-    /// Deviation of the noise on the paper variant's features, which have unit deviation.
+    /// Standard deviation of the noise on the paper variant's features, which have unit deviation.
     pub paper_noise: f64,
-    /// Deviation of the noise on the pressures that a correction sees, which have unit size.
+    /// Standard deviation of the noise on the pressures that a correction sees, which have unit
+    /// size.
     pub correction_noise: f64,
     /// Widths of the paper variant's hidden layers; the paper does not state them.
     pub paper_hidden: Vec<usize>,
     /// Widths of a correction's hidden layers.
     pub correction_hidden: Vec<usize>,
-    /// Largest correction, as a share of the size of the frame's readings. It bounds the error
-    /// that it can make far from the training presses.
+    /// Largest correction, as a fraction of the size of the frame's readings. It limits the error
+    /// that the correction can cause far from the training presses.
     pub correction_limit: f64,
-    /// Time constants of the barometers' memory that the fit starts from, s.
+    /// Initial time constants of the barometers' viscoelastic relaxation, s.
     pub time_constants_s: Vec<f64>,
-    /// Whether barometers may read otherwise than in proportion to the pressure.
+    /// Whether the response of a barometer to pressure may be nonlinear.
     pub port_law: bool,
-    /// Frames in a batch, about.
+    /// Approximate number of frames in a batch.
     pub batch_frames: usize,
-    /// Frames of one press used in training; longer presses are thinned.
+    /// Largest number of frames of one press in training; longer presses are thinned.
     pub max_frames: usize,
 }
 
@@ -129,13 +131,13 @@ impl Checked for TrainSettings {
         ranges.zero_or("correction_limit", *correction_limit, 1e-3..=10.0);
         check_time_constants(ranges, time_constants_s);
         ranges.number("batch_frames", *batch_frames, 1.0..=1e6);
-        // A press's memory is a matrix of frames by frames.
+        // The relaxation of a press is a matrix of frames by frames.
         ranges.number("max_frames", *max_frames, 2.0..=4000.0);
     }
 }
 
 impl TrainSettings {
-    /// What to train.
+    /// The variants to train.
     pub(crate) fn variants(&self) -> &[Variant] {
         self.variants.as_deref().unwrap_or(&Variant::ALL)
     }
@@ -148,7 +150,7 @@ impl TrainSettings {
         }
     }
 
-    /// Deviation of the noise on what a variant's perceptron sees.
+    /// Standard deviation of the noise on the inputs of a variant's perceptron.
     pub(crate) fn noise(&self, variant: Variant) -> f64 {
         match variant {
             Variant::Paper => self.paper_noise,
@@ -157,7 +159,7 @@ impl TrainSettings {
     }
 }
 
-/// What twins were trained with.
+/// Settings and seed of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrainedWith {
     /// The settings.

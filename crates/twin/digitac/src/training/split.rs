@@ -1,8 +1,10 @@
-//! The division of presses into training, validation and test.
+//! The division of presses into training, validation and test presses.
 //!
-//! Whole presses are held out, by place: presses that repeat a place are never on both sides. The places are
-//! ordered, and one is drawn at random from each run of a few, so that the held-out places lie between training places and cover the whole
-//! gel. The outermost places of each indenter are always used for training: a twin is not tested on extrapolation.
+//! Whole presses are held out, by location: presses that repeat a location are never in two parts.
+//! The locations are ordered, and one is drawn at random from each run of a few, so that the
+//! held-out locations lie between training locations and cover the whole gel. The outermost
+//! locations of each indenter are used for training (unless the number of training locations is
+//! limited), so that a twin is not tested on extrapolation.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,27 +19,30 @@ use crate::{DigitacError, seed};
 
 /// Side of the square in which presses belong together, mm.
 const BLOCK_MM: f64 = 0.1;
-/// The same on dense grids, whose neighbours know too much of each other.
+/// The same for dense grids, whose neighbours are too similar.
 const DENSE_BLOCK_MM: f64 = 3.0;
-/// Static presses are on a dense grid from so many places on.
+/// Static presses form a dense grid from this number of locations on.
 const DENSE_FROM: usize = 150;
 
-/// How presses are divided.
+/// Settings of the division of presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SplitSettings {
-    /// Presses whose places fall into the same square of this side belong together, mm. Dense grids want
-    /// several of their steps. Default: 0.1; 3 from 150 places on, if each press is one frame under a prescribed force.
+    /// Presses whose locations are in the same square of this side belong together, mm. Dense grids
+    /// need several of their steps. Default: 0.1; 3 from 150 locations on, if each press is one
+    /// frame under a prescribed force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block_mm: Option<f64>,
-    /// One of so many places is held out for testing.
+    /// One of this many locations is held out for testing.
     pub test_one_in: usize,
-    /// One of so many of the remaining places is held out for validation.
+    /// One of this many of the remaining locations is held out for validation.
     pub validation_one_in: usize,
-    /// So many places teach at most, drawn at random; presses at the others are not used. Default: all that are not held out for testing.
+    /// Largest number of locations for training and validation, drawn at random; presses at the
+    /// others are not used. Default: all that are not held out for testing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub teaching_places: Option<usize>,
-    /// Mountings that are held out for testing as a whole; if there are any, no places are.
+    /// Installations (mountings) of an indenter that are held out for testing as a whole. If there
+    /// are any, no locations are held out for testing.
     #[serde(alias = "test_files")]
     pub test_mountings: BTreeSet<String>,
 }
@@ -88,7 +93,7 @@ impl SplitSettings {
         Ok(if is_dense { DENSE_BLOCK_MM } else { BLOCK_MM })
     }
 
-    /// Whether the mountings that are to be held out are there.
+    /// An error if an installation that is to be held out does not exist.
     fn check_mountings(&self, recording: &Recording) -> Result<(), DigitacError> {
         let there: BTreeSet<&String> = recording.presses.iter().map(|press| &press.mounting).collect();
         let Some(unknown) = self.test_mountings.iter().find(|name| !there.contains(name)) else {
@@ -96,15 +101,16 @@ impl SplitSettings {
         };
         let names: Vec<&str> = there.iter().map(|name| name.as_str()).collect();
         let hint = match &names[..] {
-            [] => "there is no press at all".to_owned(),
+            [] => "there are no presses".to_owned(),
             names => format!("there are `{}`", names.join("`, `")),
         };
-        let problem = format!("names `{unknown}`, of which there is no press");
+        let problem = format!("names `{unknown}`, which has no presses");
         Err(Problem::new("test_mountings", problem, hint).into())
     }
 }
 
-/// Indices of presses, each in order; together they are all presses, unless few places are to teach.
+/// Indices of presses, each list in order. Together they are all presses, unless the number of
+/// training locations is limited.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Split {
     /// Presses that the twin is fitted to.
@@ -118,11 +124,13 @@ pub struct Split {
 type Place<'a> = (&'a str, i64, i64);
 
 impl Split {
-    /// Divides the presses of a recording by place. The outermost places of each file are always used for training: a twin is tested
-    /// between the places that it was trained on. `seed` draws the others.
+    /// Divides the presses of a recording by location. The outermost locations of each file are
+    /// used for training (unless [`SplitSettings::teaching_places`] limits their number): a twin is
+    /// tested between the locations that it was trained on. `seed` draws the others.
     ///
     /// # Errors
-    /// Settings that cannot be; mountings to hold out that are not there; a press without frames; too few places.
+    /// Settings outside their ranges; installations to hold out that do not exist; a press without
+    /// frames; too few locations.
     pub fn new(recording: &Recording, settings: &SplitSettings, seed: u64) -> Result<Self, DigitacError> {
         let presses = &recording.presses;
         settings.checked()?;
@@ -135,7 +143,8 @@ impl Split {
         Self::around(recording, test, drawn, settings, seed)
     }
 
-    /// Divides what is left beside test presses, which are drawn by place if they are not given.
+    /// Divides the presses other than the test presses. If these are not given, they are drawn by
+    /// location.
     pub(crate) fn around(
         recording: &Recording,
         test: BTreeSet<usize>,
@@ -185,8 +194,8 @@ impl Split {
         }
         if split.train.is_empty() || split.validation.is_empty() || split.test.is_empty() {
             return Err(DigitacError::TooFew {
-                expected: "inner places to train, to validate and to test with".into(),
-                found: format!("{} presses in {n_places} places", presses.len()),
+                expected: "inner locations to train, to validate and to test with".into(),
+                found: format!("{} presses at {n_places} locations", presses.len()),
             });
         }
         Ok(split)
@@ -202,7 +211,8 @@ fn place(press: &Press, block_mm: f64) -> Result<Place<'_>, DigitacError> {
     Ok((&press.indenter, y, x))
 }
 
-/// Places with the smallest or largest x or y of their indenter in one file, along axes on which it was moved.
+/// Locations with the smallest or largest x or y of their indenter in one file, along axes on which
+/// it was moved.
 fn outermost<'a>(places: &[Place<'a>]) -> BTreeSet<Place<'a>> {
     let mut limits: BTreeMap<&str, [i64; 4]> = BTreeMap::new();
     for &(indenter, y, x) in places {
@@ -225,8 +235,8 @@ fn outermost<'a>(places: &[Place<'a>]) -> BTreeSet<Place<'a>> {
         .collect()
 }
 
-/// Takes one group at random out of each run of `one_in`, and its presses with it. A last, shorter run gives
-/// one as well if it is at least half as long.
+/// Takes one group at random out of each run of `one_in`, and returns its presses. A last, shorter
+/// run also gives one if it is at least half as long.
 fn draw(groups: &mut Vec<Vec<usize>>, one_in: usize, seed_number: u64, name: &str) -> Vec<usize> {
     let mut random = seed::stream(seed_number, &format!("split/{name}"));
     let mut drawn = BTreeSet::new();
@@ -334,7 +344,7 @@ mod tests {
         };
         let error = Split::new(&line(12, 1), &settings, 1).unwrap_err().to_string();
         let expected =
-            "setting `test_mountings` names `nosuchfile.csv`, of which there is no press; there are `file`";
+            "setting `test_mountings` names `nosuchfile.csv`, which has no presses; there are `file`";
         assert_eq!(error, expected);
     }
 

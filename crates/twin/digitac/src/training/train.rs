@@ -1,4 +1,4 @@
-//! Trains the variants, and chooses among them by their errors on validation presses.
+//! Trains the variants, and selects one by their errors on validation presses.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::network::{Normalization, Parameters, Physics};
 use crate::physical_fit::{BarometerModel, Fitted, Known, Series, fit};
 use crate::{DigitacError, Features, Gains, PairedPress, Twin, Variant, seed};
 
-/// The learning rate does not fall below this.
+/// Smallest learning rate.
 const SMALLEST_RATE: f64 = 1e-6;
 
 /// The progress of a training.
@@ -26,11 +26,11 @@ pub struct Progress {
     pub variant: Variant,
     /// Epochs done.
     pub epoch: usize,
-    /// Epochs at most.
+    /// Largest number of epochs.
     pub of: usize,
     /// Loss on training presses: mean absolute deviation over the largest reading.
     pub loss: f64,
-    /// The same on validation presses.
+    /// Loss on validation presses.
     pub validation_loss: f64,
 }
 
@@ -39,7 +39,7 @@ pub struct Progress {
 pub struct Epoch {
     /// Learning rate.
     pub learning_rate: f64,
-    /// Loss on training presses, noise included.
+    /// Loss on training presses, with noise.
     pub loss: f64,
     /// Loss on validation presses.
     pub validation_loss: f64,
@@ -56,11 +56,13 @@ pub struct Trained {
     pub history: Vec<Epoch>,
 }
 
-/// Trains every variant of the settings, in their order, unless `progress` breaks it off. `presses` are all presses of the recording: the gel remembers those that do not
-/// teach. `seed` draws weights, batches and noise.
+/// Trains every variant of the settings, in their order, unless `progress` stops it. `presses` are
+/// all presses of the recording, because relaxation after presses that are not used for training is
+/// taken into account. `seed` draws weights, batches and noise.
 ///
 /// # Errors
-/// Settings that cannot be; presses without a usable reading above zero; a loss that is no number; [`DigitacError::Stopped`].
+/// Settings outside their ranges; presses without a usable reading above zero; a loss that is not
+/// finite; [`DigitacError::Stopped`].
 pub fn train(
     presses: &[PairedPress],
     taxels: &[String],
@@ -103,7 +105,8 @@ pub fn train(
             let mut twin = Twin::new(taxels.to_vec(), of_train, parameters);
             let validation = score_some(&twin, presses, &split.validation, scale);
             if !variant.has_perceptron() {
-                // Nothing that the validation presses stopped: they may teach as well, now that they have judged.
+                // Validation presses did not stop the training of these variants. Once they have
+                // been used for the choice, they may be used for training as well.
                 let of_both = physics(&both)?;
                 let parameters = Parameters::new(&of_both, &[], seed);
                 twin = Twin::new(taxels.to_vec(), of_both, parameters);
@@ -117,11 +120,11 @@ pub fn train(
         .collect()
 }
 
-/// The variant with the smallest headline error on validation presses; never chosen by test presses. Of
-/// equals, the first.
+/// The variant with the smallest headline error on validation presses; test presses are not used.
+/// Of equal variants, the first.
 ///
 /// # Errors
-/// Nothing was trained, or no validation press is in contact: nothing tells which variant is the best.
+/// Nothing was trained, or no validation press is in contact, so that no variant can be selected.
 pub fn choose(trained: &[Trained]) -> Result<&Trained, DigitacError> {
     if trained.is_empty() {
         return Err(DigitacError::TooFew {
@@ -150,7 +153,7 @@ impl<'a> Parts<'a> {
     fn new(presses: &'a [PairedPress], taxels: &[String], split: &Split) -> Result<Self, DigitacError> {
         for index in split.train.iter().chain(&split.validation) {
             let press = presses.get(*index).ok_or_else(|| DigitacError::TooFew {
-                expected: format!("a press number {index}, as the split says"),
+                expected: format!("press {index} of the split"),
                 found: format!("{} presses", presses.len()),
             })?;
             let f = &press.features;
@@ -179,7 +182,7 @@ impl<'a> Parts<'a> {
         indices.iter().map(|&index| &self.presses[index]).collect()
     }
 
-    /// The barometers that fit some presses best.
+    /// Gains of the barometers that fit some presses best.
     fn gains(
         &self,
         variant: Variant,
@@ -220,8 +223,9 @@ impl<'a> Parts<'a> {
         Ok(fit(&known, &series, &model, left_out, None)?.gains)
     }
 
-    /// Presses as a network is taught with them: as if the gel had rested before each. What the gel still remembers of earlier presses, as
-    /// the physics alone says it, is taken from their readings.
+    /// Presses as used for training a network: as if the gel had rested before each. The remaining
+    /// relaxation after earlier presses, according to the physics alone, is subtracted from their
+    /// readings.
     fn rested(&self, physics: &Physics, indices: &[usize]) -> Vec<PairedPress> {
         let all: Vec<&Features> = self.presses.iter().map(|press| &press.features).collect();
         let remembered = physics.gains.readings_kpa(&all);

@@ -1,12 +1,14 @@
-//! What tells distances.
+//! The trait of everything that gives distances.
 
 use glam::Vec3A;
 
-/// How far around a shape its distance is told, mm: what is further away does not press.
+/// Distance around a shape up to which distances are exact, mm: a body that is farther away does
+/// not press.
 pub(crate) const REACH_MM: f32 = 2.0;
 
-/// What tells distances.
+/// A signed distance field.
 pub(crate) trait Field {
-    /// The distance of a point in the body's frame, mm; [`REACH_MM`] or more where it is more than that.
+    /// Signed distance of a point in the body's frame, mm; [`REACH_MM`] or more where it is larger
+    /// than that.
     fn distance_mm(&self, point: Vec3A) -> f32;
 }

@@ -1,4 +1,4 @@
-//! Simple shapes, by the formulas of their distances. All stand on their origin.
+//! Signed distances of simple shapes by formulas. All shapes stand on their origin.
 
 use glam::{Vec3, Vec3A};
 
@@ -10,7 +10,7 @@ pub(crate) struct Ball {
     pub(super) radius_mm: f32,
 }
 
-/// A box with rounded edges: a smaller box, grown by the edges' radius in all directions.
+/// A box with rounded edges: a smaller box, enlarged by the radius of the edges in all directions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RoundedBox {
     /// Half the size of the smaller box.
@@ -19,7 +19,7 @@ pub(crate) struct RoundedBox {
     pub(super) edge_radius_mm: f32,
 }
 
-/// An upright cylinder with rounded edges: a smaller cylinder, grown by the edges' radius.
+/// An upright cylinder with rounded edges: a smaller cylinder, enlarged by the radius of the edges.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RoundedCylinder {
     pub(super) radius_mm: f32,
@@ -67,7 +67,7 @@ impl Field for Ball {
 }
 
 impl RoundedBox {
-    /// The distance by how far a point is beyond the smaller box along each axis, mm.
+    /// The distance, mm, from how far a point is beyond the smaller box along each axis.
     #[inline(always)]
     pub(super) fn over_sides_mm(&self, beyond: Vec3A) -> f32 {
         let outside = beyond.max(Vec3A::ZERO).length();
@@ -76,7 +76,7 @@ impl RoundedBox {
 }
 
 impl RoundedCylinder {
-    /// The distance by how far a point is beyond the smaller cylinder's side and ends, mm.
+    /// The distance, mm, from how far a point is beyond the smaller cylinder's side and its ends.
     #[inline(always)]
     pub(super) fn over_sides_mm(&self, aside: f32, above: f32) -> f32 {
         let [out_aside, out_above] = [aside.max(0.0), above.max(0.0)];

@@ -1,4 +1,4 @@
-//! Distances to a rigid shape, fast enough to ask for hundreds of them in a microsecond.
+//! Distances to a rigid shape: hundreds of evaluations take a microsecond.
 
 mod field;
 mod formulas;
@@ -15,11 +15,12 @@ use formulas::{Ball, RoundedBox, RoundedCylinder};
 use samples::Samples;
 pub(crate) use upward::Upward;
 
-/// A rigid shape whose distance is known at once: balls, boxes and cylinders by formulas, any other shape by samples on a grid.
+/// A rigid shape, prepared for fast distances: balls, boxes and cylinders by formulas, any other
+/// shape by samples on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     pub(crate) form: Form,
-    /// Corners of the box that holds the shape, in its own frame, mm.
+    /// Corners of the shape's bounding box in its own frame, mm.
     pub(crate) bounds_mm: [Vec3; 2],
 }
 
@@ -32,10 +33,11 @@ pub(crate) enum Form {
 }
 
 impl Body {
-    /// Prepares a shape; sampling one without a formula takes from a millisecond to a second, for a surface of many triangles.
+    /// Prepares a shape. Sampling a shape without a formula takes from a millisecond to a second,
+    /// the latter for a surface of many triangles.
     ///
     /// # Errors
-    /// A shape that can't be.
+    /// A shape that cannot exist.
     pub fn new(shape: &Shape, surfaces: &Surfaces) -> Result<Self, ShapeError> {
         let exact = shape.signed_distance_field(surfaces)?;
         let (low, high) = exact.bounds_mm();
@@ -58,7 +60,7 @@ impl Body {
         })
     }
 
-    /// Half of how thick it is where it is thinnest, mm.
+    /// Half of the body's smallest thickness, mm.
     pub(crate) fn half_thickness_mm(&self) -> f32 {
         let [low, high] = self.bounds_mm;
         match &self.form {
@@ -67,7 +69,8 @@ impl Body {
         }
     }
 
-    /// Whether something that is so deep in it, mm, may be nearer to its top than to what is below.
+    /// Whether a point at this depth inside the body, mm, may be nearer to the body's top than to
+    /// its lower side.
     pub(crate) fn is_thin(&self, depth_mm: f32, upward: Upward) -> bool {
         let is_thin = depth_mm > self.half_thickness_mm();
         match &self.form {
@@ -76,7 +79,7 @@ impl Body {
         }
     }
 
-    /// Bytes that the body occupies.
+    /// Bytes of memory that the body takes.
     #[must_use]
     pub fn n_bytes(&self) -> usize {
         let samples = match &self.form {

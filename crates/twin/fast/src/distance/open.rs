@@ -1,4 +1,5 @@
-//! Simple shapes that go on above their tops, by formulas. Below their middles they are as they are.
+//! Simple shapes that are continued upward above their tops, by formulas. Below their middles the
+//! distances are unchanged.
 
 use glam::{Vec2, Vec3A};
 
@@ -6,38 +7,39 @@ use super::field::Field;
 use super::formulas::{Ball, RoundedBox, RoundedCylinder};
 use super::upward::{Upward, top};
 
-/// A ball that goes on as an upright cylinder.
+/// A ball that is continued upward as a cylinder.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenBall<'a> {
     ball: &'a Ball,
     up: Vec3A,
 }
 
-/// A box that goes on above its tops.
+/// A box that is continued upward above its tops.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenBox<'a> {
     solid: &'a RoundedBox,
-    /// Twice how far the faces across each axis are tops.
+    /// Twice the degree to which the faces across each axis are tops.
     tops: Vec3A,
-    /// The way out through the face that is most of a top.
+    /// Outward normal of the top on the axis along which the box is thinnest.
     out: Vec3A,
-    /// The ways out through the faces across each axis that look down.
+    /// Outward signs of the faces across each axis that look down.
     down: Vec3A,
-    /// Cosine and sine of how far each of those leans out over what is below.
+    /// Cosine and sine of the angle by which each of those faces leans out over what is below.
     lean: [Vec3A; 2],
 }
 
-/// A cylinder that goes on above its upper end, and lying above its axis.
+/// A cylinder that is continued upward above its upper end and, where it lies, above its axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenCylinder<'a> {
     solid: &'a RoundedCylinder,
-    /// Twice how far the ends are tops.
+    /// Twice the degree to which the ends are tops.
     end: f32,
-    /// The way out through the upper end.
+    /// Outward direction of the upper end.
     out: f32,
-    /// How far the gel's outward normal leans beside the axis for each mm along it, as far as that end is a top.
+    /// Sideways component of the gel's outward normal for each mm along the axis, scaled by the
+    /// degree to which the end is a top.
     lean: Vec2,
-    /// What is up beside the axis, and how far the side is a top.
+    /// The upward direction perpendicular to the axis, and the degree to which the side is a top.
     up: Vec2,
     side: f32,
 }
@@ -55,7 +57,7 @@ impl RoundedBox {
     pub(crate) fn open(&self, upward: Upward) -> OpenBox<'_> {
         let up = upward.direction;
         let tops = upward.tops(2.0 * (self.half_mm + self.edge_radius_mm));
-        // Its lowest top, if there is one.
+        // Of the axes across which there is a top, the one along which the box is thinnest.
         let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z].into_iter();
         let main = axes
             .filter(|axis| tops.dot(*axis) != 0.0)
@@ -115,7 +117,8 @@ impl Field for OpenBox<'_> {
         let from_middle = point - self.solid.middle_mm;
         let above = (from_middle * self.tops).max(Vec3A::ZERO);
         let beyond = from_middle.abs() - half_mm - above;
-        // What leans out over the gel ends with the top: from there on its side is upright.
+        // A face that leans out over the gel ends at the top's height. Above it the side is
+        // vertical.
         let over_top = (from_middle - self.out * half_mm).dot(self.out);
         let [cosine, sine] = self.lean;
         let beside = (from_middle * self.down - half_mm) * cosine + over_top * sine;
@@ -130,7 +133,7 @@ impl Field for OpenCylinder<'_> {
         let beside = beside - self.up * (self.side * beside.dot(self.up).max(0.0));
         let from_middle = point.z - self.solid.middle_mm;
         let above = from_middle.abs() - self.solid.half_height_mm - (from_middle * self.end).max(0.0);
-        // Beside a top that leans, the side is upright.
+        // Beside a top that leans, the side is vertical.
         let over_top = (from_middle * self.out - self.solid.half_height_mm).max(0.0);
         let aside = beside.length().max((beside - self.lean * over_top).length());
         self.solid.over_sides_mm(aside - self.solid.radius_mm, above)

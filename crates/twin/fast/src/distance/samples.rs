@@ -1,4 +1,4 @@
-//! Any shape, by samples of its distance.
+//! Signed distances of any shape, by samples.
 
 use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
 use twintac_shape::SignedDistance;
@@ -7,27 +7,29 @@ use super::field::{Field, REACH_MM};
 use super::thickness::Thickness;
 use super::upward::Upward;
 
-/// Distance of the samples, mm, unless there would be too many.
+/// Spacing of the samples, mm, unless there would be too many.
 const SPACING_MM: f64 = 0.5;
 
-/// Cells across the thinnest body, where there would not be too many: one with fewer would have no inside.
+/// Cells across the smallest extent of a body, where there would not be too many: a body with fewer
+/// would have no inside.
 const CELLS_OF_THICKNESS: f64 = 6.0;
 
-/// Samples of a body at most: those of a larger one are farther apart.
+/// Largest number of samples of a body: the samples of a larger body have a larger spacing.
 const MOST_SAMPLES: f64 = 4e6;
 
-/// Distances at the corners of cells, along z first: points of a body that stands upright, one above the other, lie side by side in memory.
+/// Distances at the corners of cells, along z first: points above one another in an upright body
+/// lie side by side in memory.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Samples {
     first_mm: Vec3A,
     /// Cells along each axis.
     n_cells: Vec3A,
     cells_per_mm: Vec3A,
-    /// How far apart in memory sides of cells are that are neighbours along each axis: whole numbers.
+    /// Offsets in memory between sides of neighbouring cells along each axis: whole numbers.
     strides: Vec3A,
     along_x: usize,
-    /// Distances of the four corners of each cell on its side towards lower x, mm, so that they are read at once: lower y first, then lower z.
-    /// `[n_cells.x + 1][n_cells.y][n_cells.z]`
+    /// Distances, mm, of the four corners of each cell on its side towards lower x, so that they
+    /// are read at once: lower y first, then lower z. `[n_cells.x + 1][n_cells.y][n_cells.z]`
     sides_mm: Vec<Vec4>,
     thickness: Thickness,
 }
@@ -87,7 +89,8 @@ impl Samples {
         self.thickness.least_mm
     }
 
-    /// Whether something that is so deep in it, mm, may be nearer to its top than to what is below.
+    /// Whether a point at this depth inside the body, mm, may be nearer to the body's top than to
+    /// its lower side.
     pub(super) fn is_thin(&self, depth_mm: f32, upward: Upward) -> bool {
         self.thickness.is_thin(depth_mm, upward.direction)
     }
@@ -98,7 +101,7 @@ impl Samples {
 }
 
 impl Field for Samples {
-    /// Linear between the samples.
+    /// Linear interpolation between the samples; [`REACH_MM`] outside of them.
     #[inline(always)]
     fn distance_mm(&self, point: Vec3A) -> f32 {
         let cells = (point - self.first_mm) * self.cells_per_mm;
@@ -107,7 +110,7 @@ impl Field for Samples {
         }
         let corner = cells.floor();
         let part = cells - corner;
-        // Whole numbers of single precision are exact as far as there are samples.
+        // Whole numbers in single precision are exact for the largest number of samples.
         let sides = &self.sides_mm[whole(corner.dot(self.strides))..];
         let (low, high) = (sides[0], sides[self.along_x]);
         let between_x = low + (high - low) * part.x;
@@ -117,10 +120,11 @@ impl Field for Samples {
     }
 }
 
-/// A small whole number that is not negative. A cast would look for what is not.
+/// A small whole number that is not negative, as an integer. A cast would also check for other
+/// numbers.
 #[inline(always)]
 fn whole(number: f32) -> usize {
-    /// Added to a number below it, it leaves a whole number in the last bits.
+    /// A number below this one, added to it, stands in the last bits of the sum as a whole number.
     const ROUND: f32 = 8_388_608.0;
     ((number + ROUND).to_bits() - ROUND.to_bits()) as usize
 }
@@ -152,7 +156,8 @@ mod tests {
                 worst_mm = worst_mm.max((found_mm - distance_mm).abs());
             }
         }
-        // A sharp bend of the distance lies between samples: half a spacing's diagonal at most, much less on average.
+        // Kinks of the distance lie between samples: the error is half the diagonal of a cell at
+        // most, and much less on average.
         assert!(worst_mm < 0.2, "{worst_mm}");
         assert_eq!(samples.distance_mm(Vec3A::splat(50.0)), REACH_MM);
     }

@@ -1,4 +1,4 @@
-//! How thick a sampled body is under its faces.
+//! Thickness of a sampled body under its faces.
 
 use std::collections::BTreeMap;
 
@@ -6,28 +6,29 @@ use glam::Vec3A;
 
 use super::field::Field;
 
-/// What is thicker is as good as without end, mm: nothing is pressed so deep.
+/// Thickness above which a body counts as infinitely thick, mm: no press goes so deep.
 const THICKEST_MM: f32 = 12.0;
 
-/// Steps into a body, mm.
+/// Step into a body, mm.
 const STEP_MM: f32 = 0.25;
 
-/// Normals that differ by less than one over this count as one.
+/// Resolution of normals: components are rounded to multiples of one over this.
 const NORMALS: f32 = 4.0;
 
-/// How high a normal looks up at least for its face to be a top.
+/// Smallest upward component of the normal of a top.
 const LEAST_TOP: f32 = 0.5 - 1.0 / NORMALS;
 
-/// Half of how thick a body is under each face that is not thick, mm, by the faces' normals.
+/// Half of the thickness of a body under each face that is not thick, mm, by the normal of the
+/// face.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Thickness {
     halves_mm: Vec<(Vec3A, f32)>,
-    /// The least of them, mm.
+    /// The smallest of them, mm.
     pub(super) least_mm: f32,
 }
 
 impl Thickness {
-    /// Of faces near points.
+    /// Thickness under the faces near these points.
     pub(super) fn of(field: &impl Field, near_surface: impl Iterator<Item = Vec3A>) -> Self {
         let mut thinnest: BTreeMap<[i8; 3], f32> = BTreeMap::new();
         for point in near_surface {
@@ -56,14 +57,14 @@ impl Thickness {
         }
     }
 
-    /// Whether something that is so deep, mm, may be nearer to a top than to what is below.
+    /// Whether a point at this depth, mm, may be nearer to a top than to the lower side.
     pub(super) fn is_thin(&self, depth_mm: f32, up: Vec3A) -> bool {
         let mut halves = self.halves_mm.iter();
         halves.any(|(normal, half_mm)| depth_mm > *half_mm && normal.dot(up) > LEAST_TOP)
     }
 }
 
-/// The direction away from a body.
+/// Outward normal: the direction in which the distance grows.
 fn normal(field: &impl Field, point: Vec3A) -> Vec3A {
     let difference = |axis: Vec3A| field.distance_mm(point + axis) - field.distance_mm(point - axis);
     let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z].map(|axis| difference(STEP_MM * axis));

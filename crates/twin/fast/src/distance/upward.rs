@@ -1,21 +1,25 @@
-//! Which faces of a body are its top: what is above them is as deep in the body as in one that goes on.
+//! Which faces of a body are its tops. The region above a top is treated as if the body continued
+//! there.
 
 use glam::Vec3A;
 
-/// How steeply the face of a thin body looks up, as the height of its normal, to be a top in part, and as a whole.
+/// Upward component of the normal from which a face of a thin body begins to count as a top, and
+/// from which it counts fully.
 const LOOKS_UP: [f32; 2] = [0.1, 0.3];
 
-/// By how much more that of a thick one has to: boxes that were taught lean, and their sides are none.
+/// By how much more the face of a thick body has to look up: training presses contain leaning
+/// boxes, and their sides are not tops.
 const MORE: f32 = 0.4;
 
-/// What is thin and thick, mm: boxes that were taught are 3.5 mm wide at least.
+/// Thickness of a thin body and of a thick one, mm: the boxes of the training presses are at least
+/// 3.5 mm wide.
 const THIN_MM: f32 = 2.5;
 const THICK_MM: f32 = 3.5;
 
-/// What is up, as a body sees it: gels are never above a body that came from outside.
+/// The upward direction in a body's frame: the gel is never above a body that came from outside.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Upward {
-    /// The gel's outward normal in the body's frame.
+    /// Outward normal of the gel in the body's frame.
     pub(super) direction: Vec3A,
 }
 
@@ -24,7 +28,8 @@ impl Upward {
         Self { direction }
     }
 
-    /// How far faces across each axis are tops, from 0 to 1, with the sign of the one that is, of a body this thick along each, mm.
+    /// Degree to which the faces across each axis are tops, from 0 to 1, with the sign of the face
+    /// that is one. `thick_mm`: thickness of the body along each axis, mm.
     pub(super) fn tops(self, thick_mm: Vec3A) -> Vec3A {
         let (height, thick_mm) = (self.direction.to_array(), thick_mm.to_array());
         Vec3A::from_array(
@@ -33,7 +38,8 @@ impl Upward {
     }
 }
 
-/// How far a face is a top, from 0 to 1, by the height of its normal and how thick the body is under it, mm.
+/// Degree to which a face is a top, from 0 to 1. `height`: upward component of its normal;
+/// `thick_mm`: thickness of the body under it, mm.
 pub(super) fn top(height: f32, thick_mm: f32) -> f32 {
     let thick = ((thick_mm - THIN_MM) / (THICK_MM - THIN_MM)).clamp(0.0, 1.0);
     let [side, top] = LOOKS_UP.map(|height| height + MORE * thick);

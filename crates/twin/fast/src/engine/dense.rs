@@ -1,4 +1,4 @@
-//! A layer that multiplies everything.
+//! A dense layer: every input is multiplied.
 
 use pulp::Simd;
 use twintac_learn::Linear;
@@ -6,13 +6,13 @@ use twintac_learn::Linear;
 use super::product::Weights;
 use crate::simd::lanes;
 
-/// Rows that go through a layer together.
+/// Rows that are processed together.
 const ROWS: usize = 2;
 
-/// The same of a layer whose outputs are one vector.
+/// Rows that are processed together where the outputs of a layer are one vector.
 const NARROW_ROWS: usize = 8;
 
-/// A layer, its outputs filled up with zeros.
+/// A layer, its outputs padded with zeros to whole vectors.
 #[derive(Clone, Debug)]
 pub(super) struct Dense {
     weights: Weights,
@@ -31,12 +31,13 @@ impl Dense {
         }
     }
 
-    /// Outputs, with those that fill up.
+    /// Number of outputs, padding included.
     pub(super) fn n_outputs(&self) -> usize {
         self.bias.len()
     }
 
-    /// `[n_rows][n_units]` to `[n_rows][n_outputs]`; a row has the same bits however many there are. Units that only fill up are left out.
+    /// `[n_rows][n_units]` to `[n_rows][n_outputs]`. A row has the same bits for any number of
+    /// rows. Padding units of the input are ignored.
     #[inline(always)]
     pub(super) fn apply<S: Simd>(
         &self,
@@ -67,7 +68,7 @@ impl Dense {
         }
     }
 
-    /// Some rows from a first one on.
+    /// Processes `N` rows from a first one on.
     #[inline(always)]
     fn add<S: Simd, const N: usize>(
         &self,
@@ -86,12 +87,12 @@ impl Dense {
     }
 }
 
-/// All weights of a layer, its rows filled up with zeros.
+/// All weights of a layer, its rows padded with zeros.
 pub(super) fn padded_rows(layer: &Linear, n: usize) -> Vec<f32> {
     layer.weight.rows().flat_map(|row| padded(row, n)).collect()
 }
 
-/// A row, filled up with zeros.
+/// A row, padded with zeros.
 pub(super) fn padded(row: &[f32], n: usize) -> impl Iterator<Item = f32> {
     row.iter().copied().chain(std::iter::repeat(0.0)).take(n)
 }

@@ -1,4 +1,5 @@
-//! The networks as they are evaluated: only what touches is multiplied, for a few sensors together.
+//! Evaluation of the networks: only points that something is near are multiplied, for a few sensors
+//! together.
 
 mod dense;
 mod places;
@@ -19,21 +20,21 @@ use dense::padded;
 use places::Places;
 use sparse::{Near, Sparse};
 
-/// Ports that are evaluated together at most, but for those of a single sensor.
+/// Largest number of ports that are evaluated together, unless a single sensor has more.
 const MOST_PORTS: usize = 64;
 
-/// The networks of a fast gel, laid out for speed.
+/// The networks of a surrogate, laid out for speed.
 #[derive(Clone, Debug)]
 pub(crate) struct Engine {
     pressure: Sparse,
-    /// Whether one row has all ports, instead of a row for each.
+    /// Whether one row holds all ports, instead of one row for each port.
     has_all_ports: bool,
     wrench: Sparse,
     n_points: usize,
     n_ports: usize,
 }
 
-/// What an evaluation writes to.
+/// Buffers of an evaluation.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     near: Near,
@@ -69,7 +70,7 @@ impl Engine {
         }
     }
 
-    /// Sensors that are evaluated together.
+    /// Number of sensors that are evaluated together.
     pub(crate) fn n_together(&self) -> usize {
         (MOST_PORTS / self.n_ports.max(1)).max(1)
     }
@@ -88,8 +89,10 @@ impl Engine {
         }
     }
 
-    /// From what touches to the pressure at each port, kPa, and force and torque, of at most [`Self::n_together`] sensors.
-    /// `[n_sensors][n_points * N_CHANNELS]` to `[n_sensors][n_ports]` and `[n_sensors]`. A sensor has the same bits whatever other sensors there are.
+    /// From network inputs to the pressure at each port, kPa, and force, N, and torque, N mm, of at
+    /// most [`Self::n_together`] sensors. `[n_sensors][n_points * N_CHANNELS]` to
+    /// `[n_sensors][n_ports]` and `[n_sensors]`. A sensor has the same bits whatever other sensors
+    /// there are.
     pub(crate) fn read(
         &self,
         inputs: &[f32],
@@ -107,7 +110,8 @@ impl Engine {
     }
 }
 
-/// What describes a place does not change, nor does the finest mesh.
+/// The bias of the first layer at a port. It contains the inputs that do not change: the
+/// description of the location, and the finest mesh.
 fn bias_at(at: DVec2, layout: &Layout, first: &Linear, n_others: usize, n_hidden: usize) -> Vec<f32> {
     let mut place = Vec::new();
     layout
@@ -168,14 +172,15 @@ impl WithSimd for Reading<'_> {
 }
 
 impl Near {
-    /// Collects the points near which something is.
+    /// Collects the points that something is near.
     #[inline(always)]
     fn find(&mut self, inputs: &[f32], n_points: usize) {
         self.ends.clear();
         let mut n_near = 0;
         for sensor in inputs.as_chunks::<N_CHANNELS>().0.chunks_exact(n_points) {
             for (number, channels) in sensor.iter().enumerate() {
-                // What is not near the surface is not near anything below it. What is written there in vain is written over.
+                // A body that is out of reach of the surface is out of reach of the deeper levels
+                // too. An entry of a point out of reach is overwritten by the next point.
                 self.channels[n_near] = *channels;
                 self.points[n_near] = number as u32;
                 n_near += usize::from(channels[0] > 0.0);

@@ -1,4 +1,4 @@
-//! Where rows of a first layer are used: by which port, for which point of the grids.
+//! Which rows of a first layer are used by which port, for which point of the grids.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,15 @@ use glam::DVec2;
 
 use crate::layout::Layout;
 
-/// Which ports have which points in their patches.
+/// Which points are in the patches of which ports. A *place* is a position in a patch, relative to
+/// the port.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// Point by point.
+    /// Sorted by point.
     uses: Vec<Use>,
     /// Where the uses of each point begin, and where those of the last one end. `[n_points + 1]`
     first_use: Vec<u32>,
-    /// How many uses all places before each place have, and all of them. `[n_places + 1]`
+    /// Number of uses of all places before each place, and of all places. `[n_places + 1]`
     before: Vec<u32>,
 }
 
@@ -23,12 +24,12 @@ pub(super) struct Use {
     /// Number of the place in the patch, whose rows multiply the features.
     pub(super) place: u32,
     pub(super) port: u32,
-    /// How many uses all places before that one have.
+    /// Number of uses of all places before that one.
     pub(super) before: u32,
 }
 
 impl Places {
-    /// Of uses with their points, and so many places and points.
+    /// From uses with their points, and the numbers of places and points.
     fn of(mut uses: Vec<(u32, Use)>, n_places: usize, n_points: usize) -> Self {
         uses.sort_by_key(|(point, pair)| (*point, pair.port));
         let first_use = |point| uses.partition_point(|pair| pair.0 < point as u32) as u32;
@@ -70,8 +71,9 @@ impl Places {
         )
     }
 
-    /// The patches of ports. A port that is on none of the grids gets rows of its own on the first, which are added to `rows`, `[n_places][n_own]`: the inputs between the
-    /// grid's points are linear. Ports that lie equally far behind their cells share them.
+    /// The patches of ports. A port that lies on none of the grids gets rows of its own on the
+    /// first grid, which are appended to `rows`, `[n_places][n_own]`: the inputs between the points
+    /// are interpolated linearly. Ports with the same offset within their cells share these rows.
     pub(super) fn around(ports_mm: &[DVec2], layout: &Layout, rows: &mut Vec<f32>, n_own: usize) -> Self {
         let mut known = BTreeMap::new();
         let mut uses = Vec::new();
@@ -103,7 +105,7 @@ impl Places {
         &self.uses[first..end]
     }
 
-    /// How many uses places before a place have.
+    /// Number of uses of the places before a place.
     #[inline(always)]
     pub(super) fn before(&self, place: usize) -> usize {
         self.before[place] as usize
@@ -118,7 +120,8 @@ impl Places {
     }
 }
 
-/// The places of a port that lies this far behind its cell, by their offsets from the cell: those of the patch, or new ones between them.
+/// The places of a port with this offset within its cell, by their offsets from the cell: those of
+/// the patch, or new ones that are interpolated between them.
 fn places_behind(part: DVec2, layout: &Layout, rows: &mut Vec<f32>, n_own: usize) -> BTreeMap<[i32; 2], u32> {
     let offsets = layout.patch.offsets.iter().enumerate();
     if part.length() < 1e-6 {

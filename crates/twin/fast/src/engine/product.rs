@@ -1,24 +1,25 @@
-//! Sums of products: what layers are made of.
+//! Sums of products, of which layers consist.
 
 use pulp::Simd;
 
 use crate::simd::{lanes, vectors};
 
-/// Vectors of a row of sums that stay in the processor's registers: the first that divides a row.
+/// Numbers of vectors of a row of sums that are held in registers: the first that divides a row is
+/// used.
 const WIDTHS: [usize; 3] = [4, 2, 1];
 
-/// Weights of rows that are added up, filled up with zeros.
+/// Rows of weights, padded with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Weights {
     /// In the order in which they are needed. `[n_outputs / n_block][n_factors][n_block]`
     numbers: Vec<f32>,
-    /// Outputs that are summed up together.
+    /// Outputs that are summed together.
     n_block: usize,
     n_factors: usize,
 }
 
 impl Weights {
-    /// Of rows. `[n_factors][n_outputs]`, whole vectors
+    /// From rows of whole vectors. `[n_factors][n_outputs]`
     pub(super) fn of(rows: &[f32], n_outputs: usize) -> Self {
         let n_vectors = n_outputs / lanes();
         let n_columns = WIDTHS.into_iter().find(|width| n_vectors.is_multiple_of(*width));
@@ -40,10 +41,10 @@ impl Weights {
         self.numbers.len() == self.n_factors * S::F32_LANES
     }
 
-    /// Adds the weights, each row multiplied by a factor, to some rows of sums, in the order of the factors: a row has the same bits whatever other rows
-    /// there are.
+    /// Adds the rows of weights, each multiplied by a factor, to some rows of sums, in the order of
+    /// the factors: a row has the same bits whatever other rows there are.
     ///
-    /// - `factors`: of each row. `[n_factors]`
+    /// - `factors`: those of each row. `[n_factors]`
     /// - `starts`: where the rows start in the sums.
     #[inline(always)]
     pub(super) fn add<S: Simd, const ROWS: usize>(
@@ -54,7 +55,7 @@ impl Weights {
         sums: &mut [f32],
     ) {
         let mut numbers = self.numbers.as_slice();
-        // Not `chunks_exact`, which divides.
+        // `chunks_exact` would divide.
         while !numbers.is_empty() {
             let (block, others) = numbers.split_at(self.n_factors * self.n_block);
             numbers = others;
@@ -70,9 +71,9 @@ impl Weights {
     }
 }
 
-/// A block of `N` vectors of outputs.
+/// Processes a block of `N` vectors of outputs.
 #[inline(always)]
-#[allow(clippy::needless_range_loop)] // simple loops stay in registers
+#[allow(clippy::needless_range_loop)] // plain loops stay in registers
 fn add_block<S: Simd, const ROWS: usize, const N: usize>(
     simd: S,
     block: &[f32],

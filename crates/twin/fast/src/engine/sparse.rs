@@ -1,4 +1,5 @@
-//! A network most of whose points have nothing near them: only the others are multiplied.
+//! Evaluation of a network most of whose points have nothing near them: only the other points are
+//! multiplied.
 
 use pulp::Simd;
 
@@ -9,7 +10,7 @@ use crate::contact::N_CHANNELS;
 use crate::network::{LocalNetwork, silu};
 use crate::simd::lanes;
 
-/// Points whose features are finished together.
+/// Points whose features are computed together.
 const POINTS: usize = 8;
 
 /// The network, laid out for speed.
@@ -17,15 +18,16 @@ const POINTS: usize = 8;
 pub(super) struct Sparse {
     /// From the channels of a point to its features.
     point: Dense,
-    /// Features of a point near which nothing is, which are taken off, for each of a few points. `[POINTS][n_features]`, filled up
+    /// Features of a point that nothing is near, repeated for [`POINTS`] points; they are
+    /// subtracted. `[POINTS][n_features]`, padded
     nothing: Vec<f32>,
     n_features: usize,
-    /// What the layer after the points adds for each unit of a feature. `[n_places]`
+    /// Weights of the layer after the features, for each place in the patch. `[n_places]`
     rows: Vec<Weights>,
-    /// What does not change of that layer. `[n_ports][n_hidden]`
+    /// The constant part of that layer. `[n_ports][n_hidden]`
     bias: Vec<f32>,
     places: Places,
-    /// Its outputs, filled up.
+    /// Number of that layer's outputs, padded.
     n_hidden: usize,
     n_ports: usize,
     /// The layers after that.
@@ -35,23 +37,24 @@ pub(super) struct Sparse {
 /// The points of some sensors that something is near.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Near {
-    /// `[n_near][N_CHANNELS]`, and room for more
+    /// `[n_near][N_CHANNELS]`, with spare room
     pub(super) channels: Vec<[f32; N_CHANNELS]>,
-    /// `[n_near]`, and room for more
+    /// `[n_near]`, with spare room
     pub(super) points: Vec<u32>,
     /// Where the points of each sensor end. `[n_sensors]`
     pub(super) ends: Vec<usize>,
 }
 
-/// What an evaluation writes to.
+/// Buffers of an evaluation.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// `[n_near][n_features]`, filled up
+    /// `[n_near][n_features]`, padded
     features: Vec<f32>,
-    /// What uses each place. For each place as many as could.
+    /// The uses of each place. Each place has room for the largest possible number.
     pairs: Vec<Pair>,
     n_pairs: Vec<u32>,
-    /// What goes into a layer, and out of it: a row for each port in whose patch something is. `[n_sensors * n_ports][n_units]`
+    /// Inputs and outputs of a layer: one row for each port that has something in its patch.
+    /// `[n_sensors * n_ports][n_units]`
     hidden: [Vec<f32>; 2],
     /// The row of each port, or [`NO_ROW`]. `[n_sensors * n_ports]`
     rows: Vec<u32>,
@@ -65,11 +68,13 @@ struct Pair {
     row: u32,
 }
 
-/// Of a port with nothing in its patch.
+/// Marks a port with nothing in its patch.
 const NO_ROW: u32 = u32::MAX;
 
 impl Sparse {
-    /// The network of so many ports. `around` says where they are, and what does not change; it may add rows of places, of which each has so many numbers.
+    /// Lays out a network for `n_places` places. `around` returns where the ports are and the
+    /// constant part of the first layer. It may append rows of places; its second argument says how
+    /// many numbers a place has, and how many hidden units there are.
     pub(super) fn of(
         network: &LocalNetwork,
         n_places: usize,
@@ -81,7 +86,7 @@ impl Sparse {
         let n_hidden = first.bias.len().next_multiple_of(lanes());
         let point = Dense::of(&network.point);
         let mut rows = padded_rows(first, n_hidden);
-        // Behind those of the places come the rows of what describes a place.
+        // After the rows of the places come the rows of the inputs that describe a location.
         rows.truncate(n_places * n_features * n_hidden);
         let (places, bias) = around(&mut rows, [n_features * n_hidden, n_hidden]);
         let nothing: Vec<f32> = padded(&nothing, point.n_outputs()).collect();
@@ -101,7 +106,7 @@ impl Sparse {
         }
     }
 
-    /// Memory for so many sensors of so many points.
+    /// Buffers for this number of sensors and points.
     pub(super) fn scratch(&self, n_sensors: usize, n_points: usize) -> Scratch {
         let n_rows = n_sensors * self.n_ports;
         let widest = self.rest.iter().map(Dense::n_outputs).max().unwrap_or(0);
@@ -115,7 +120,8 @@ impl Sparse {
         }
     }
 
-    /// Passes the outputs of each port of each sensor to `found`; none of a port with nothing in its patch.
+    /// Passes the outputs of each port of each sensor to `found`; `None` for a port with nothing in
+    /// its patch.
     #[inline(always)]
     pub(super) fn read<S: Simd>(
         &self,
@@ -135,7 +141,7 @@ impl Sparse {
         }
     }
 
-    /// Features of the points that something is near.
+    /// Computes the features of the points that something is near.
     #[inline(always)]
     fn features<S: Simd>(&self, simd: S, near: &Near, features: &mut [f32]) {
         let n_near = near.ends.last().copied().unwrap_or(0);
@@ -149,8 +155,9 @@ impl Sparse {
         }
     }
 
-    /// Sorts what has to be multiplied by its places: the rows of a place are fetched once for all sensors. Returns how many ports have something in their patches;
-    /// each of them gets a row, in which there is what does not change.
+    /// Sorts the products by place, so that the rows of a place are fetched once for all sensors.
+    /// Each port that has something in its patch gets a row, which is initialized with the constant
+    /// part. Returns the number of these rows.
     #[inline(always)]
     fn pair(&self, near: &Near, scratch: &mut Scratch) -> usize {
         let Scratch {
@@ -188,7 +195,7 @@ impl Sparse {
         n_rows
     }
 
-    /// The layer after the points, place by place.
+    /// The layer after the features, place by place.
     #[inline(always)]
     fn first<S: Simd>(&self, simd: S, n_sensors: usize, scratch: &mut Scratch) {
         let (features, sums) = (&scratch.features, &mut scratch.hidden[0]);
@@ -211,7 +218,7 @@ impl Sparse {
         }
     }
 
-    /// The layers after the first. Returns the outputs of all rows, and how many places a row of them has.
+    /// The layers after the first. Returns the outputs of all rows, and the length of a row.
     #[inline(always)]
     fn finish<'a, S: Simd>(
         &self,

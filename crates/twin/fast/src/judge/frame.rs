@@ -1,37 +1,39 @@
-//! How far a fast gel is from the solved gel at one moment.
+//! Errors of a surrogate at one frame, compared with the FEM solution.
 
 use glam::DVec3;
 use twintac_shape::{Pose, ShapeError, Surfaces};
 
 use crate::{Body, FastGel, Lesson};
 
-/// Gaps between gel and shape at which nothing should be read, mm.
+/// Gaps between gel and shape at which all pressures should be zero, mm.
 const GAPS_MM: [f64; 4] = [0.1, 0.25, 0.5, 1.0];
 
-/// What is less than this part of a press's largest value is judged as if it were so much.
+/// In relative errors, a value below this fraction of a press's largest value counts as this
+/// fraction.
 const LEAST_OF_PRESS: f64 = 0.25;
 
-/// One moment of a press.
+/// Errors of one frame of a press.
 pub(super) struct FrameErrors<'a> {
     pub(super) press: &'a Lesson,
     pub(super) gel_from_indenter: Pose,
     pub(super) novelty: f32,
-    /// Of the taxel that reads most, as part of the press's largest value.
+    /// Signed error of the pressure at the taxel with the largest pressure, as a fraction of the
+    /// press's largest pressure.
     pub(super) nearest: f64,
-    /// Over all taxels, likewise.
+    /// Mean absolute error over all taxels, as the same fraction.
     pub(super) all: f64,
-    /// Length of the error of the force, likewise.
+    /// Length of the error of the force, as a fraction of the press's largest force.
     pub(super) force: f64,
-    /// The larger one of the errors of the nearest taxel and of the force, as part of what they are
-    /// at this moment.
+    /// The larger of the errors of the nearest taxel and of the force, relative to their values at
+    /// this frame.
     pub(super) of_moment: f64,
 }
 
-/// A press beside what is read of it.
+/// Errors of a press.
 pub(super) struct PressErrors<'a> {
     pub(super) frames: Vec<FrameErrors<'a>>,
-    /// What is read while the shape hovers: the largest at any taxel, as part of the press's
-    /// largest value.
+    /// Predicted pressure while the shape hovers: the largest at any taxel, as a fraction of the
+    /// press's largest pressure, for each gap.
     pub(super) untouched: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! How far a fast gel is from the gel that was solved.
+//! Evaluation of a surrogate: its errors, compared with FEM solutions.
 
 mod frame;
 
@@ -10,56 +10,59 @@ use twintac_shape::{Shape, ShapeError, Surfaces};
 use crate::{Body, FastGel, Lesson};
 use frame::{FrameErrors, PressErrors};
 
-/// Errors of a group of frames, as part of each press's largest value. A group without frames has
-/// none.
+/// Errors of a group of frames, relative to the largest value of each press. A group without frames
+/// has no errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroupErrors {
     /// Number of frames, at least one.
     pub n_frames: usize,
-    /// Mean error of the taxel that reads most, %.
+    /// Mean absolute error at the taxel with the largest pressure, %.
     pub nearest_percent: f64,
-    /// Mean of the same with its sign, %.
+    /// Mean signed error at that taxel, %.
     pub nearest_bias_percent: f64,
     /// Mean error over all taxels, %.
     pub all_percent: f64,
     /// Mean length of the error of the force, %.
     pub force_percent: f64,
-    /// Frames in which the taxel that reads most, or the force, is off by more than a tenth of what
-    /// it is then, %. What is less than a quarter of the press's largest value counts as so much.
+    /// Percentage of frames in which the pressure at the taxel with the largest pressure, or the
+    /// force, has an error of more than a tenth of its value in that frame. A value below a quarter
+    /// of the press's largest counts as this quarter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub off_by_a_tenth_percent: Option<f64>,
 }
 
-/// How far a fast gel is from the solved gel on presses that it was not taught. A group is `None`
-/// where no frame is of it.
+/// Errors of a surrogate on test presses, which it was not trained on. A group is `None` where it
+/// has no frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// All frames.
     pub overall: Option<GroupErrors>,
     /// By kind of shape.
     pub by_shape: BTreeMap<String, Option<GroupErrors>>,
-    /// By depth below the undeformed surface, mm: from a whole number to the next, as deep as
-    /// lessons or these presses went.
+    /// By depth below the undeformed surface, mm: from a whole number to the next, up to the
+    /// largest depth of training presses or of these presses.
     pub by_depth_mm: BTreeMap<u32, Option<GroupErrors>>,
-    /// By distance of the shape's origin from the gel's middle, as part of the way to its corner:
-    /// four equal parts.
+    /// By distance of the shape's origin from the gel's middle, as a fraction of the distance from
+    /// the middle to a corner: four equal parts.
     pub by_place: BTreeMap<String, Option<GroupErrors>>,
-    /// Where the shape's origin is no farther from an edge of the gel than half its height.
+    /// Frames in which the shape's origin is no farther from an edge of the gel than half of the
+    /// gel's height.
     #[serde(default)]
     pub at_edge: Option<GroupErrors>,
-    /// What is read of shapes that do not touch, 0.1 to 1 mm above the gel: the largest at any
-    /// taxel, mean, % of each press's largest.
+    /// Predicted pressure for shapes that do not touch, 0.1 to 1 mm above the gel: the largest at
+    /// any taxel, mean over presses and gaps, % of each press's largest pressure.
     #[serde(default)]
     pub untouched_percent: Option<f64>,
-    /// Frames whose contact is like what was taught (`familiar`), and others (`new`).
+    /// Frames with an in-distribution contact (`familiar`, an OOD score of at most 1), and the
+    /// others (`new`).
     pub by_novelty: BTreeMap<String, Option<GroupErrors>>,
 }
 
 impl FastGel {
-    /// Compares readings with those of solved presses.
+    /// Compares predictions with FEM solutions of test presses.
     ///
     /// # Errors
-    /// A press whose shape can't be.
+    /// A press whose shape cannot exist.
     pub fn judge(&self, presses: &[Lesson], surfaces: &Surfaces) -> Result<Judgement, ShapeError> {
         let (mut frames, mut untouched) = (Vec::new(), Vec::new());
         for press in presses {
@@ -105,7 +108,7 @@ impl FastGel {
         })
     }
 
-    /// Learns from presses that were not taught how far readings are off where few lessons pressed.
+    /// Learns from held-out presses how large the errors are where few training presses pressed.
     pub(crate) fn calibrate_novelty(
         &mut self,
         held_out: &[Lesson],
@@ -123,13 +126,13 @@ impl FastGel {
         Ok(())
     }
 
-    /// How deep the shape's origin is below the top of the gel's middle, whole mm.
+    /// Depth of the shape's origin below the top of the gel's middle, whole mm.
     fn whole_depth_mm(&self, frame: &FrameErrors<'_>) -> u32 {
         (self.center_mm.z - frame.gel_from_indenter.position_mm.z).max(0.0) as u32
     }
 
-    /// How far the shape's origin is from the gel's middle, as part of the way to its corner, below
-    /// 1.
+    /// Distance of the shape's origin from the gel's middle, as a fraction of the distance from the
+    /// middle to a corner, below 1.
     fn part_to_corner(&self, frame: &FrameErrors<'_>) -> f64 {
         let [low_mm, _] = self.bounds_mm();
         let way_mm = (frame.gel_from_indenter.position_mm - self.center_mm).truncate();
@@ -158,7 +161,7 @@ fn group_errors(frames: &[&FrameErrors<'_>]) -> Option<GroupErrors> {
     })
 }
 
-/// The mean of numbers; `None` of none.
+/// The mean of numbers; `None` without numbers.
 fn mean(numbers: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
     let n = numbers.len();
     (n > 0).then(|| numbers.sum::<f64>() / n as f64)

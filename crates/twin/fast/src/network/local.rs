@@ -1,4 +1,5 @@
-//! A network that looks at each point by itself before it looks at all of them: whether a point is in contact is a matter of that point alone.
+//! A network that computes features of each point by itself before it combines all points: whether
+//! a point is in contact depends on that point alone.
 
 use twintac_learn::{Linear, Matrix, add};
 use twintac_random::{RandomStream, normal};
@@ -7,16 +8,18 @@ use super::perceptron::{Kept, Perceptron};
 use super::silu;
 use crate::contact::N_CHANNELS;
 
-/// The network, or a slope of each of its parameters. Its inputs are the channels of each point, then what else there is.
+/// The network, or the gradient of its parameters. Its inputs are the channels of each point, then
+/// the other inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LocalNetwork {
-    /// From the channels of a point to its features, the same for every point. Features are what a unit gives less what it gives where nothing is near.
+    /// From the channels of a point to its features, the same for every point. A feature is the
+    /// activation minus the activation of a point that nothing is near.
     pub(crate) point: Linear,
-    /// From the features of all points, and what else there is, to the outputs.
+    /// From the features of all points and the other inputs to the outputs.
     pub(crate) rest: Perceptron,
 }
 
-/// What the way back needs.
+/// Values that the backward pass needs.
 pub(crate) struct LocalKept {
     /// `[n_rows * n_points][N_CHANNELS]`
     points: Matrix,
@@ -26,7 +29,7 @@ pub(crate) struct LocalKept {
 }
 
 impl LocalNetwork {
-    /// Random weights for so many points and other inputs.
+    /// Random weights for these numbers of points, features and other inputs.
     pub(crate) fn new(
         [n_points, n_features, n_others]: [usize; 3],
         hidden: &[usize],
@@ -49,7 +52,7 @@ impl LocalNetwork {
         zeros
     }
 
-    /// Features of a point near which nothing is, before they are taken off.
+    /// Activations of a point that nothing is near, which are subtracted.
     pub(crate) fn nothing(&self) -> Vec<f32> {
         let mut nothing = self.point.bias.clone();
         silu::apply(&mut nothing);
@@ -89,7 +92,7 @@ impl LocalNetwork {
         (output, kept)
     }
 
-    /// Adds the slopes of the parameters to `slopes`.
+    /// Adds the gradient of the parameters to `slopes`.
     pub(crate) fn backward(
         &self,
         kept: &LocalKept,
@@ -103,7 +106,7 @@ impl LocalNetwork {
         for row in joined.rows() {
             slope.values.extend_from_slice(&row[..n_points * n_features]);
         }
-        // What is taken off is the unit's value at the offset alone.
+        // The subtracted activation depends on the bias alone.
         let mut taken_off = slope.column_sums();
         silu::times_slope(&mut taken_off, &self.point.bias);
         silu::times_slope(&mut slope.values, &kept.before_unit.values);

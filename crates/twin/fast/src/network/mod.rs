@@ -1,4 +1,5 @@
-//! The networks: one reads a place of the floor from what touches around it, others the force, or all taxels, from what touches anywhere.
+//! The networks: one computes the pressure at a location from the bodies around it; others compute
+//! the force, or all taxels, from the whole grid.
 
 mod local;
 mod patch;

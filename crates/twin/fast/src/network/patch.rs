@@ -1,4 +1,5 @@
-//! The part of the grid around a place of the floor, and the place itself, as inputs of a network.
+//! The part of the grid around a location of the gel's base, and the location itself, as inputs of
+//! a network.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -7,25 +8,25 @@ use twintac_sensor::Sensor;
 use crate::contact::N_CHANNELS;
 use crate::surface::SurfaceGrid;
 
-/// How far a patch reaches, of the gel's height: what presses farther away is little felt.
+/// Radius of a patch as a fraction of the gel's height: bodies farther away have little effect.
 const REACH_OF_HEIGHT: f64 = 0.94;
 
-/// How far a patch reaches at least, points of the grid.
+/// Smallest radius of a patch, in points of the grid.
 const LEAST_REACH: i32 = 4;
 
-/// What the gel's edges do falls by e over this share of its height.
+/// Decay length of the effect of the gel's edges, as a fraction of the gel's height.
 const EDGE_DECAY: f64 = 0.5;
 
-/// Numbers that describe a place.
+/// Number of inputs that describe a location.
 const N_PLACE: usize = 13;
 
-/// Offsets of a patch's points from its place, in points of the grid.
+/// Offsets of a patch's points from its location, in points of the grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Patch {
     pub(crate) offsets: Vec<[i32; 2]>,
 }
 
-/// A way to turn or mirror a square: axes swapped or not, then each mirrored or not.
+/// A symmetry of the square: axes swapped or not, then each mirrored or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turn {
     pub(crate) swapped: bool,
@@ -33,7 +34,7 @@ pub(crate) struct Turn {
 }
 
 impl Patch {
-    /// All points of a grid within reach, over a gel of this height.
+    /// All points of a grid within the radius, over a gel of this height.
     pub(crate) fn round(grid: &SurfaceGrid, height_mm: f64) -> Self {
         let reach = (REACH_OF_HEIGHT * height_mm / grid.spacing_mm).round() as i32;
         let reach = reach.max(LEAST_REACH);
@@ -44,12 +45,14 @@ impl Patch {
         }
     }
 
-    /// Numbers that a network is shown: the patch, the place, and how coarse the mesh was.
+    /// Number of inputs of a network: the patch, the description of the location, and the
+    /// coarseness of the mesh.
     pub(crate) fn n_inputs(&self) -> usize {
         self.offsets.len() * N_CHANNELS + N_PLACE + 1
     }
 
-    /// For each offset, the point of the grid there, seen from a place on the grid, turned; `None` beside the grid.
+    /// For each offset, transformed by `turn`, the point of the grid at that offset from a location
+    /// on the grid; `None` beside the grid.
     pub(crate) fn points<'a>(
         &'a self,
         grid: &'a SurfaceGrid,
@@ -64,13 +67,13 @@ impl Patch {
 }
 
 impl Turn {
-    /// As things are.
+    /// The identity.
     pub(crate) const NONE: Self = Self {
         swapped: false,
         mirrored: [false; 2],
     };
 
-    /// The turn of a number from 0 to 7.
+    /// The symmetry of a number from 0 to 7.
     pub(crate) fn number(number: u32) -> Self {
         Self {
             swapped: number & 4 != 0,
@@ -78,7 +81,7 @@ impl Turn {
         }
     }
 
-    /// Where an offset of the turned patch is in the gel.
+    /// The offset in the gel of an offset of the transformed patch.
     fn apply(self, [i, j]: [i32; 2]) -> [i32; 2] {
         let [mut i, mut j] = if self.swapped { [j, i] } else { [i, j] };
         if self.mirrored[0] {
@@ -91,7 +94,7 @@ impl Turn {
     }
 }
 
-/// The gel around places of its floor.
+/// The extent of the gel, from which locations of its base are described.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Surroundings {
     low_mm: DVec2,
@@ -124,8 +127,9 @@ impl Surroundings {
         self.low_mm
     }
 
-    /// Appends what describes a place of the floor, seen from a turned patch: how close each edge of the gel is, and how much lower the gel is
-    /// than at its highest, above the place and to each side.
+    /// Appends the description of a location of the gel's base, seen from a transformed patch: how
+    /// close each edge of the gel is, and how much lower the gel is than at its highest point,
+    /// above the location and to each side.
     pub(crate) fn describe(&self, grid: &SurfaceGrid, at: DVec2, turn: Turn, inputs: &mut Vec<f32>) {
         let lower = |at: DVec2| 1.0 - grid.height_mm_at(at) / self.height_mm;
         let mut near = Vec::with_capacity(4);

@@ -5,28 +5,28 @@ use twintac_random::{RandomStream, normal};
 
 use super::silu;
 
-/// A perceptron, or a slope of each of its parameters.
+/// A multilayer perceptron, or the gradient of its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Perceptron {
     pub(crate) layers: Vec<Linear>,
 }
 
-/// What the way back needs.
+/// Values that the backward pass needs.
 pub(crate) struct Kept {
-    /// What went into each layer.
+    /// Inputs of each layer.
     inputs: Vec<Matrix>,
-    /// What came out of each layer but the last.
+    /// Outputs of each layer but the last.
     outputs: Vec<Matrix>,
 }
 
 impl Perceptron {
-    /// Random weights. `sizes` counts inputs, hidden units of each layer, and outputs.
+    /// Random weights. `sizes`: numbers of inputs, of hidden units of each layer, and of outputs.
     pub(crate) fn new(sizes: &[usize], random: &mut RandomStream) -> Self {
         let mut layers: Vec<Linear> = sizes
             .windows(2)
             .map(|pair| Linear::new(pair[0], pair[1], &mut |deviation| normal(random, deviation)))
             .collect();
-        // A unit lets half of it through (He et al., arXiv 1502.01852).
+        // Compensates that a unit passes about half of its inputs (He et al., arXiv 1502.01852).
         let last = layers.len() - 1;
         for layer in &mut layers[..last] {
             layer
@@ -56,7 +56,7 @@ impl Perceptron {
         (output, kept)
     }
 
-    /// The slope of the inputs; adds those of the parameters to `slopes`.
+    /// Returns the gradient of the inputs; adds that of the parameters to `slopes`.
     pub(crate) fn backward(&self, kept: &Kept, output_slope: Matrix, slopes: &mut Self) -> Matrix {
         let mut slope = output_slope;
         for index in (1..self.layers.len()).rev() {

@@ -1,20 +1,22 @@
-//! The sigmoid linear unit `x / (1 + e⁻ˣ)` (Elfwing, Uchibe and Doya, arXiv 1702.03118): a rectifier without a kink.
+//! The sigmoid linear unit `x / (1 + e⁻ˣ)` (Elfwing, Uchibe and Doya, arXiv 1702.03118), a smooth
+//! rectifier.
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Beyond this, e⁻ˣ is taken as at it.
+/// Arguments of the exponential are limited to this size.
 const LARGEST: f32 = 30.0;
 
-/// Terms of the power series of eˣ, highest first; used for |x| ≤ ln 2 / 2.
+/// Coefficients of the power series of eˣ, highest power first; used for |x| ≤ ln 2 / 2.
 const SERIES: [f32; 6] = [1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
 
-/// The unit's value. It is made of single additions and multiplications, so that every processor gives the same bits.
+/// The unit's value. It consists of single additions and multiplications, so every processor gives
+/// the same bits.
 #[inline(always)]
 pub(crate) fn silu(x: f32) -> f32 {
     x * sigmoid(x)
 }
 
-/// Replaces values by the unit's.
+/// Replaces values by the unit's values.
 pub(crate) fn apply(values: &mut [f32]) {
     struct Apply<'a>(&'a mut [f32]);
 
@@ -30,7 +32,7 @@ pub(crate) fn apply(values: &mut [f32]) {
     Arch::new().dispatch(Apply(values));
 }
 
-/// Multiplies slopes of the unit's values by the unit's slope at what went in.
+/// Multiplies gradients with respect to the unit's outputs by the unit's derivative at its inputs.
 pub(crate) fn times_slope(slopes: &mut [f32], values: &[f32]) {
     struct Times<'a>(&'a mut [f32], &'a [f32]);
 
@@ -47,7 +49,7 @@ pub(crate) fn times_slope(slopes: &mut [f32], values: &[f32]) {
     Arch::new().dispatch(Times(slopes, values));
 }
 
-/// The unit's slope.
+/// The unit's derivative.
 #[inline(always)]
 fn silu_slope(x: f32) -> f32 {
     let sigmoid = sigmoid(x);
@@ -59,14 +61,14 @@ fn sigmoid(x: f32) -> f32 {
     1.0 / (1.0 + exp(-x))
 }
 
-/// eˣ to six digits.
+/// eˣ with a precision of six digits.
 #[inline(always)]
 fn exp(x: f32) -> f32 {
-    /// Added and taken off again, it leaves a whole number in the last bits.
+    /// After this is added to a number, the last bits of the sum are the nearest whole number.
     const ROUND: f32 = 12_582_912.0;
     /// The first bits of ln 2, so that a product with a whole number is exact.
     const LN_2_HIGH: f32 = 0.693_359_4;
-    // Comparisons, not `clamp`: these become one instruction for eight numbers.
+    // Unlike `clamp`, these comparisons become one instruction for eight numbers.
     let x = if x < LARGEST { x } else { LARGEST };
     let x = if x > -LARGEST { x } else { -LARGEST };
     let shifted = x.mul_add(std::f32::consts::LOG2_E, ROUND);

@@ -1,49 +1,52 @@
-//! Where lessons pressed, how often and how deep: point by point of the grid.
+//! Coverage: how often and how deep training presses pressed each point of the grid.
 
 use crate::contact::{N_CHANNELS, TOUCHED, levels_mm};
 use crate::distance::REACH_MM;
 use crate::surface::SurfaceGrid;
 
-/// Where no lesson pressed, so much of one counts.
+/// Number of presses that a point counts for where no training press pressed.
 const LEAST_LESSONS: f32 = 0.01;
 
-/// More lessons at a point make no difference: what is left does not come from its place.
+/// More training presses at a point make no difference: the remaining error does not come from its
+/// location.
 const MOST_LESSONS: f32 = 100.0;
 
-/// Where lessons that went so deep are many, next to none went all the way: what is deeper by this
-/// factor still counts as taught.
+/// Factor by which a contact may be deeper than the training presses: where many pressed, next to
+/// none went all the way to the largest depth.
 const SLIGHTLY_DEEPER: f32 = 1.05;
 
-/// How far readings are off at least where one lesson pressed: so much that those where none
-/// pressed are unsure.
+/// Lower limit of the error where one training press pressed. It is large enough that contacts
+/// where none pressed get a score above 1.
 pub(super) const LEAST_ERROR_OF_ONE: f32 = 0.02;
 
-/// What lessons pressed of a gel.
+/// Which points training presses pressed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Coverage {
-    /// How many lessons pressed each point, with the mirror images of those that teach as well.
-    /// `[n_points]`
+    /// Number of training presses that pressed each point, mirror images included where they are
+    /// trained on. `[n_points]`
     pub(crate) lessons: Vec<f32>,
-    /// How deep one of them pressed there, mm. `[n_points]`
+    /// The largest depth that one of them had there, mm. `[n_points]`
     pub(crate) deepest_mm: Vec<f32>,
-    /// How far nine of ten readings are off at most where one lesson pressed, as part of them: of `n` lessons, the
-    /// root of `n` less.
+    /// 90th percentile of the relative error where one training press pressed. With `n` presses the
+    /// error is smaller by the root of `n`.
     pub(crate) error_of_one: f32,
 }
 
-/// A press as coverage sees it.
+/// Coverage of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Covered {
-    /// One over the root of the number of lessons that pressed its points: mean by how far they are
-    /// pressed.
+    /// One over the root of the number of training presses at its points: mean, weighted by how far
+    /// the points are pressed.
     pub(crate) sparsity: f32,
-    /// How deep it is over how deep lessons pressed any of its points, or slightly deeper.
+    /// Its depth over the largest depth (slightly increased) of training presses at any of its
+    /// points.
     pub(crate) depth: f32,
 }
 
 impl Coverage {
-    /// Of the inputs of lessons' frames, numbered by lesson: `[n_points * N_CHANNELS]` of the grid.
-    /// `is_symmetric`: whether frames teach their mirror images across x and across y.
+    /// From the inputs of frames of training presses, with the numbers of the presses:
+    /// `[n_points * N_CHANNELS]` of the grid. `is_symmetric`: whether frames are also used mirrored
+    /// across x and across y.
     pub(crate) fn of<'a>(
         grid: &SurfaceGrid,
         frames: impl Iterator<Item = (usize, &'a [f32])>,
@@ -51,7 +54,7 @@ impl Coverage {
     ) -> Self {
         let n_points = grid.len();
         let (mut lessons, mut deepest_mm) = (vec![0.0; n_points], vec![0.0f32; n_points]);
-        // The last lesson that was counted at each point.
+        // The last press that was counted at each point.
         let mut counted = vec![usize::MAX; n_points];
         for (lesson, inputs) in frames {
             for (point, channels) in inputs.as_chunks::<N_CHANNELS>().0.iter().enumerate() {
@@ -102,20 +105,20 @@ impl Coverage {
         }
     }
 
-    /// The depth of which lessons reached a part at least, whole mm.
+    /// Start of the last interval of 1 mm that the depths of training presses reach, mm.
     pub(crate) fn deepest_whole_mm(&self) -> u32 {
         let deepest_mm = self.deepest_mm.iter().copied().fold(0.0, f32::max);
         (deepest_mm.ceil() as u32).saturating_sub(1)
     }
 
-    /// How well a press is covered; `None` where nothing touches.
+    /// Coverage of a contact; `None` where nothing touches.
     pub(crate) fn covered(&self, grid: &SurfaceGrid, inputs: &[f32]) -> Option<Covered> {
         let points = inputs.as_chunks::<N_CHANNELS>().0;
         let nearest = points.iter().map(|point| point[0]).fold(0.0, f32::max);
         if REACH_MM * (1.0 - nearest) >= TOUCHED[1] * grid.spacing_mm as f32 {
             return None;
         }
-        // What presses between the points counts by those that it is nearest to.
+        // A body that presses between the points counts by the points nearest to it.
         let floor = nearest.min(1.0) * (1.0 - 1e-3);
         let (mut weights, mut sparsity) = (0.0, 0.0);
         let (mut depth, mut deepest_mm) = (0.0f32, f32::MIN_POSITIVE);
@@ -140,7 +143,7 @@ impl Coverage {
     }
 }
 
-/// How far a point lies inside what presses it, mm, by the level that is deepest in it; 0 outside.
+/// Depth of a point inside a body, mm, from the level at which this is deepest; 0 outside.
 fn depth_mm(grid: &SurfaceGrid, channels: &[f32; N_CHANNELS]) -> f32 {
     let levels = channels.iter().zip(levels_mm(grid.spacing_mm as f32));
     let inside = levels.filter(|(share, _)| **share > 1.0);
@@ -155,7 +158,7 @@ mod tests {
     use crate::layout::Layout;
     use twintac_sensor::SensorFile;
 
-    /// What presses one point so deep, mm.
+    /// Inputs of a body that presses one point this deep, mm.
     fn pressed(grid: &SurfaceGrid, [i, j]: [usize; 2], depth_mm: f32) -> Vec<f32> {
         let mut inputs = vec![0.0; grid.len() * N_CHANNELS];
         let point = &mut inputs.as_chunks_mut::<N_CHANNELS>().0[j * grid.n[0] + i];
@@ -180,7 +183,7 @@ mod tests {
         let coverage = Coverage::of(grid, frames(), [true, false]);
         let covered =
             |at: [usize; 2], depth_mm: f32| coverage.covered(grid, &pressed(grid, at, depth_mm)).unwrap();
-        // Two lessons, however many frames each has.
+        // Two training presses, however many frames each has.
         for there in [[3, 2], [n_x - 4, 2]] {
             assert!((covered(there, 1.0).sparsity - 0.5f32.sqrt()).abs() < 1e-5);
             assert!(covered(there, 2.0).depth < 1.0 && covered(there, 2.2).depth > 1.0);
@@ -191,7 +194,7 @@ mod tests {
         let whole = Coverage::of(grid, frames(), [true, true]);
         let there = pressed(grid, [3, n_y - 3], 1.0);
         assert!(whole.covered(grid, &there).unwrap().sparsity < 1.0);
-        // What hovers is nowhere.
+        // A hovering body has no contact.
         assert_eq!(coverage.covered(grid, &pressed(grid, [3, 2], -1.0)), None);
     }
 }

@@ -1,26 +1,30 @@
-//! A contact in a few numbers that do not depend on where on the gel it is, and little on how it is turned about the vertical.
+//! Descriptor of a contact: a few numbers that do not depend on the location on the gel, and little
+//! on the rotation about the vertical.
 
 use glam::{Vec2, Vec3};
 
 use crate::contact::N_CHANNELS;
 use crate::surface::SurfaceGrid;
 
-/// Numbers for each height at which distances are taken.
+/// Numbers for each height at which distances are evaluated.
 const N_OF_LEVEL: usize = 6;
 
 /// Numbers of a contact.
 pub(crate) const N_TRAITS: usize = N_CHANNELS * N_OF_LEVEL;
 
-/// What a point near a body weighs where points inside count, so that a body with none inside has a plane too.
+/// Weight of a point near a body where points inside count, so that a body without points inside
+/// has a plane too.
 const NEAR_WEIGHT: f32 = 1e-3;
 
-/// Added to the determinant of second moments, points of the grid to the fourth: a contact of few points has hardly a tilt.
+/// Added to the determinant of second moments, in grid spacings to the fourth power: a contact of
+/// few points has hardly any tilt.
 const LEAST_DETERMINANT: f32 = 0.02;
 
-/// How deep, steep, large, tilted and uneven what touches is, at each height; `None` where nothing is near. A thin body may press with none of the
-/// grid's points inside it: what is near counts.
+/// How deep, steep, large, tilted and uneven a contact is at each height; `None` where nothing is
+/// near. A thin body may press without having a grid point inside it, so points near a body count
+/// too.
 ///
-/// `inputs` are those of a grid's points. `[n_points * N_CHANNELS]`
+/// `inputs`: those of a grid's points. `[n_points * N_CHANNELS]`
 pub(crate) fn traits(grid: &SurfaceGrid, inputs: &[f32]) -> Option<[f32; N_TRAITS]> {
     let points = inputs.as_chunks::<N_CHANNELS>().0;
     let mut traits = [0.0; N_TRAITS];
@@ -30,22 +34,22 @@ pub(crate) fn traits(grid: &SurfaceGrid, inputs: &[f32]) -> Option<[f32; N_TRAIT
     (traits[0] > 0.0).then_some(traits)
 }
 
-/// What is near at one height.
+/// The points at one height.
 struct Level<'a> {
     grid: &'a SurfaceGrid,
     points: &'a [[f32; N_CHANNELS]],
     number: usize,
 }
 
-/// The plane that comes nearest to the shares of the points, by weights.
+/// The weighted least-squares plane through the proximities of the points.
 struct Plane {
     /// Sum of the weights.
     weight: f32,
-    /// Standard deviation of the points from their middle, points of the grid.
+    /// Standard deviation of the points from their centroid, grid spacings.
     spread: f32,
-    /// Its steepness, a point.
+    /// Gradient of the plane, per grid spacing.
     slope: f32,
-    /// Standard deviation of the shares from it.
+    /// Standard deviation of the proximities from the plane.
     rest: f32,
 }
 
@@ -54,7 +58,7 @@ impl Level<'_> {
         self.points[j * self.grid.n[0] + i][self.number]
     }
 
-    /// Columns, rows and shares of the points that something is near.
+    /// Columns, rows and proximities of the points that something is near.
     fn near(&self) -> impl Iterator<Item = ([usize; 2], f32)> {
         let [n_x, n_y] = self.grid.n;
         let all = (0..n_y).flat_map(move |j| (0..n_x).map(move |i| [i, j]));
@@ -80,7 +84,7 @@ impl Level<'_> {
         ]
     }
 
-    /// Sum of the differences between neighbours.
+    /// Sum of the absolute differences between neighbouring points.
     fn steps(&self) -> f32 {
         let [n_x, n_y] = self.grid.n;
         let mut steps = 0.0;
@@ -109,7 +113,7 @@ impl Level<'_> {
             total += weight;
         }
         let middle = sum / total;
-        // Second moments about the middle: of the places, and of places with shares.
+        // Second moments about the centroid: of the locations, and of locations with proximities.
         let (mut squares, mut products) = (Vec3::ZERO, Vec3::ZERO);
         for (place, weight) in places() {
             let Vec3 { x, y, z } = place - middle;

@@ -1,4 +1,4 @@
-//! How unlike a contact is to all that was taught.
+//! Out-of-distribution (OOD) score: how far a contact is from those of the training presses.
 
 mod coverage;
 mod descriptor;
@@ -15,24 +15,24 @@ pub(crate) use descriptor::N_TRAITS;
 pub(crate) use narrow::narrowness;
 pub(crate) use nearest::Nearest;
 
-/// Readings that are off by more than this part of them are said to be unsure.
+/// Tolerated relative error of a prediction.
 const TOLERATED: f32 = 0.1;
 
-/// The part of readings that are to be off by no more.
+/// Fraction of predictions that are to have no larger error.
 const SURE: f64 = 0.9;
 
-/// What was taught, as far as it tells what is new.
+/// What the score is computed from.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Novelty {
-    /// Contacts, wherever they were.
+    /// Descriptors of the training contacts, without their locations.
     pub(crate) nearest: Nearest,
-    /// Places and depths, whatever pressed there.
+    /// Locations and depths of the training presses, whatever shape pressed there.
     pub(crate) coverage: Coverage,
 }
 
 impl Novelty {
-    /// Of the frames of lessons. `is_symmetric`: whether they teach their mirror images across x
-    /// and across y.
+    /// From the frames of training presses. `is_symmetric`: whether they are also used mirrored
+    /// across x and across y.
     pub(crate) fn of(frames: &Frames, grid: &SurfaceGrid, is_symmetric: [bool; 2]) -> Self {
         let pressed = frames.frames.iter().filter(|frame| frame.wrench[2] != 0.0);
         let pressed = pressed.map(|frame| (frame.lesson, nearest::of_grid(grid, &frame.inputs)));
@@ -42,8 +42,8 @@ impl Novelty {
         }
     }
 
-    /// Learns from how far readings are off under presses that were not taught: inputs of the grid,
-    /// and errors as part of the reading.
+    /// Learns the error of predictions from held-out presses: inputs of the grid, and relative
+    /// errors.
     pub(crate) fn calibrate(&mut self, grid: &SurfaceGrid, presses: &[(Vec<f32>, f32)]) {
         let errors = presses.iter().filter_map(|(inputs, error)| {
             let covered = self.coverage.covered(grid, nearest::of_grid(grid, inputs))?;
@@ -56,9 +56,10 @@ impl Novelty {
         }
     }
 
-    /// 0 where nothing is near; above 1 where a contact is farther from all that were taught than
-    /// 99 of 100 of the same kinds, where it is deeper than lessons pressed, and where so few
-    /// pressed that more than one of ten readings would be off by more than a tenth.
+    /// The score: 0 where nothing is near. It is above 1 where the distance to the nearest training
+    /// contact is larger than for 99 of 100 contacts of the same kinds, where the contact is deeper
+    /// than the training presses, and where so few of them pressed that more than one of ten
+    /// predictions would have an error of more than a tenth.
     pub(crate) fn score(&self, grid: &SurfaceGrid, inputs: &[f32]) -> f32 {
         let contact = self.nearest.score(grid, inputs);
         let Some(covered) = self.coverage.covered(grid, nearest::of_grid(grid, inputs)) else {

@@ -1,4 +1,5 @@
-//! How narrow what presses is: what is much narrower than the grid lies between its points, and is read by chance.
+//! How narrow a body is where it presses: a body much narrower than the grid spacing lies between
+//! the points, and its prediction depends on where it lies relative to them.
 
 use glam::{Mat3, Vec2};
 use twintac_shape::Pose;
@@ -9,25 +10,29 @@ use crate::contact::box_in_gel;
 use crate::distance::REACH_MM;
 use crate::surface::SurfaceGrid;
 
-/// The least width that is read well, in distances of the grid's points: bars and walls of less are read up to a fifth wrong.
+/// Smallest width with good predictions, in grid spacings: the error for narrower bars and walls is
+/// up to a fifth.
 const LEAST_WIDTH: f32 = 1.25;
 
-/// Distance of the places that are looked at, as part of half of that width.
+/// Spacing of the locations at which the width is measured, as a fraction of half of that width.
 const STEP: f32 = 1.0 / 3.0;
 
-/// How high above the gel's surface it is looked how wide a body is, likewise: edges and ends are narrow by themselves.
+/// Height above the gel's surface at which the width of a body is measured, as a fraction of half
+/// of that width: edges and ends are narrow by themselves.
 const ABOVE: f32 = 1.5;
 
-/// How far from a place the body has to be wide, likewise: a sharp corner is still one of something wide.
+/// Distance from a location within which the body has to be wide, as a fraction of half of that
+/// width: a sharp corner may belong to a wide body.
 const CORNER: f32 = 2.0;
 
-/// What is measured as so much of the width has it: places lie beside the middle.
+/// Fraction of the width that has to be measured, because locations lie beside the body's middle.
 const MEASURED: f32 = 0.9;
 
-/// The part of what presses that may be narrow.
+/// Fraction of the pressed locations that may be narrow.
 const NARROW: f32 = 0.05;
 
-/// How many times narrower a body is than what is read well, where it presses: above 1 if it is, else 0.
+/// By which factor a body is narrower, where it presses, than the smallest width with good
+/// predictions: above 1 if it is, else 0.
 pub(crate) fn narrowness(grid: &SurfaceGrid, body: &Body, gel_from_body: &Pose) -> f32 {
     let spacing_mm = grid.spacing_mm as f32;
     let half_mm = 0.5 * LEAST_WIDTH * spacing_mm;
@@ -71,7 +76,8 @@ pub(crate) fn narrowness(grid: &SurfaceGrid, body: &Body, gel_from_body: &Pose) 
     narrowest(&places, columns.columns.len(), half_mm, step_mm)
 }
 
-/// Of places, row by row: how far inside a body each is above the gel, and how far outside on the gel, mm.
+/// `places`: for each location, row by row, how far it lies inside a body above the gel, and how
+/// far outside on the gel, mm.
 fn narrowest(places: &[[f32; 2]], n_columns: usize, half_mm: f32, step_mm: f32) -> f32 {
     let reach = (CORNER * half_mm / step_mm) as i32;
     let place = |at: i32| (at % n_columns as i32, at / n_columns as i32);

@@ -1,4 +1,5 @@
-//! The distance to the nearest of the contacts that were taught (nearest neighbours as a measure of novelty: Ramaswamy, Rastogi and Shim, 2000).
+//! Distance to the nearest training contact (nearest neighbours as a measure of novelty: Ramaswamy,
+//! Rastogi and Shim, 2000).
 
 use twintac_learn::Matrix;
 
@@ -6,32 +7,35 @@ use super::descriptor::{N_TRAITS, traits};
 use crate::surface::SurfaceGrid;
 use crate::training::{Frames, TaughtFrame};
 
-/// One lesson of so many says how far its contacts are from those of all other lessons.
+/// One of this many training presses is used to find how far its contacts are from those of all
+/// other presses.
 const ONE_ASKED_OF: usize = 8;
 
-/// The part of those contacts whose novelty is at most 1.
+/// Fraction of those contacts whose score is at most 1.
 const FAMILIAR: f64 = 0.99;
 
-/// The contacts that were taught, wherever they were.
+/// Descriptors of the training contacts, without their locations.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Nearest {
-    /// Traits of all contacts that were taught, each over its deviation among those that press. `[n_kept][N_TRAITS]`
+    /// Descriptors of all training contacts, each number divided by its standard deviation among
+    /// those that press. `[n_kept][N_TRAITS]`
     pub(crate) kept: Matrix,
-    /// One over the deviation of each trait. `[N_TRAITS]`
+    /// One over the standard deviation of each number. `[N_TRAITS]`
     pub(crate) scale: Vec<f32>,
-    /// The distance that counts as 1.
+    /// The distance that counts as a score of 1.
     pub(crate) unit: f32,
 }
 
 impl Nearest {
-    /// Of the frames of lessons.
+    /// From the frames of training presses.
     pub(crate) fn of(frames: &Frames, grid: &SurfaceGrid) -> Self {
         let contacts: Vec<(&TaughtFrame, [f32; N_TRAITS])> = frames
             .frames
             .iter()
             .filter_map(|frame| Some((frame, traits(grid, of_grid(grid, &frame.inputs))?)))
             .collect();
-        // What only hovers is known too, but would make pressed contacts look alike.
+        // Hovering shapes are kept as well, but if they counted here, pressed contacts would look
+        // alike.
         let pressed = || contacts.iter().filter(|(frame, _)| frame.wrench[2] != 0.0);
         let scale: Vec<f32> = (0..N_TRAITS)
             .map(|number| 1.0 / deviation(pressed().map(|(_, traits)| traits[number])))
@@ -63,7 +67,8 @@ impl Nearest {
         }
     }
 
-    /// 0 where nothing is near, above 1 where a contact is farther from all that were taught than 99 of 100 of the same kinds.
+    /// The score: 0 where nothing is near, above 1 where the distance to the nearest training
+    /// contact is larger than for 99 of 100 contacts of the same kinds.
     pub(crate) fn score(&self, grid: &SurfaceGrid, inputs: &[f32]) -> f32 {
         let Some(mut traits) = traits(grid, of_grid(grid, inputs)) else {
             return 0.0;
@@ -96,7 +101,7 @@ fn distance_squared(a: &[f32; N_TRAITS], b: &[f32; N_TRAITS]) -> f32 {
     sum
 }
 
-/// The standard deviation; 1 of numbers that are all the same.
+/// The standard deviation; 1 if all numbers are the same.
 fn deviation(values: impl Iterator<Item = f32> + Clone) -> f32 {
     let n = values.clone().count().max(1) as f64;
     let mean = values.clone().map(f64::from).sum::<f64>() / n;

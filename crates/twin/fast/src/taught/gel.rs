@@ -1,4 +1,4 @@
-//! The gel that a fast gel was taught.
+//! The gel that a surrogate was trained on.
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -9,9 +9,9 @@ use twintac_shape::{Solid, TriangleSurface};
 use super::mismatch::Difference;
 use super::same::same;
 
-/// What presses of a gel depend on, whatever reads them. Names do not count, nor what a fast gel
-/// does not know: relaxation (it reads what the gel does at once), and the friction of indenters
-/// (it was taught without).
+/// Everything that presses of a gel depend on. Names do not count. Properties that a surrogate does
+/// not have do not count either: relaxation (the surrogate gives the instantaneous response), and
+/// the friction of indenters (it was trained without).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TaughtGel {
@@ -19,17 +19,17 @@ pub(crate) struct TaughtGel {
     material: Model,
     bulk_modulus_kpa: f64,
     shell: Option<Shell>,
-    /// Corners of the boxes that stand in the gel, smallest and largest coordinates, mm.
+    /// Corners of the boxes that are cast into the gel, smallest and largest coordinates, mm.
     inclusions_mm: Vec<[glam::DVec3; 2]>,
 }
 
-/// What a gel looks like, a surface by its content.
+/// Shape of a gel; a surface of triangles by its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 enum TaughtSolid {
     Described(Solid),
     Surface {
-        /// Of its vertices and triangles.
+        /// Digest of the vertices and triangles.
         sha256: String,
         n_triangles: usize,
         low_mm: glam::DVec3,
@@ -51,7 +51,7 @@ impl TaughtGel {
         }
     }
 
-    /// How a sensor's gel differs from this one.
+    /// The differences between a sensor's gel and this one.
     pub(crate) fn differences(&self, sensors: &Self) -> Vec<Difference> {
         let differs = |what: &str, is_same: bool, describe: &dyn Fn(&Self) -> String| {
             (!is_same).then(|| Difference {

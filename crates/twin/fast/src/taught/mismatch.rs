@@ -1,21 +1,21 @@
-//! A fast gel beside a sensor whose gel it is not.
+//! The error for a surrogate of one gel used with a sensor of another.
 
 use std::fmt;
 
-/// A fast gel and a sensor that do not belong together.
+/// A surrogate and a sensor that do not belong together.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the fast gel of the sensor `{of}` is not that of `{sensor}`: {}; make one with `twintac fast train`", list(.differences))]
+#[error("the surrogate of the gel of sensor `{of}` is not that of `{sensor}`: {}; train one with `twintac fast train`", list(.differences))]
 pub struct FastGelMismatch {
-    /// Name of the sensor that the fast gel was taught for.
+    /// Name of the sensor that the surrogate was trained for.
     pub of: String,
-    /// Name of the sensor that it was put together with.
+    /// Name of the sensor that it was used with.
     pub sensor: String,
     pub(crate) differences: Vec<Difference>,
 }
 
 impl FastGelMismatch {
-    /// An error if there are differences. Names are those of the sensors: the one that was taught,
-    /// and the one that it was put together with.
+    /// An error if there are differences. `of` and `sensor` are names of sensors: the one that the
+    /// surrogate was trained for, and the one that it was used with.
     pub(crate) fn of((of, sensor): (&str, &str), differences: Vec<Difference>) -> Result<(), Self> {
         if differences.is_empty() {
             return Ok(());
@@ -28,7 +28,7 @@ impl FastGelMismatch {
     }
 }
 
-/// One difference between a fast gel and a sensor.
+/// One difference between a surrogate and a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Difference {
     pub(crate) what: String,

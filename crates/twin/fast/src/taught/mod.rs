@@ -1,4 +1,4 @@
-//! Which gel a fast gel is of, and whether it is that of a sensor.
+//! Which gel a surrogate was trained on, and whether it is that of a sensor.
 
 mod gel;
 mod mismatch;

@@ -1,4 +1,4 @@
-//! Where a fast gel is read.
+//! Ports: where a surrogate is evaluated.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -27,12 +27,12 @@ impl Port {
         port.collect()
     }
 
-    /// Their places in the gel's plane, mm.
+    /// Positions of ports in the gel's plane, mm.
     pub(crate) fn places_mm(ports: &[Self]) -> Vec<DVec2> {
         ports.iter().map(|port| port.position_mm.truncate()).collect()
     }
 
-    /// The same disc at another place of its plane.
+    /// The same disc at another location of its plane.
     pub(crate) fn at(&self, place_mm: DVec2) -> Self {
         Self {
             position_mm: place_mm.extend(self.position_mm.z),
@@ -40,7 +40,7 @@ impl Port {
         }
     }
 
-    /// How a sensor's ports differ from these: their number, or the first one that does.
+    /// How a sensor's ports differ from these: their number, or the first port that differs.
     pub(crate) fn difference(fast: &[Self], sensors: &[Self]) -> Option<Difference> {
         if fast.len() != sensors.len() {
             return Some(Difference {

@@ -1,13 +1,13 @@
-//! Whether two descriptions say the same.
+//! Comparison of two descriptions.
 
 use serde::Serialize;
 use serde_json::Value;
 
-/// Numbers that differ by this part are one: 15.2 kPa as a shear modulus, and the same by way of
-/// Young's.
+/// Relative difference up to which two numbers count as equal: a shear modulus of 15.2 kPa may be
+/// given directly, or be computed from Young's modulus.
 const TOLERANCE: f64 = 1e-9;
 
-/// Whether two values say the same, number by number.
+/// Whether two values are equal, number by number, within the tolerance.
 pub(super) fn same<T: Serialize>(a: &T, b: &T) -> bool {
     let value = |of: &T| serde_json::to_value(of).expect("descriptions are numbers and words");
     is_same(&value(a), &value(b))

@@ -1,4 +1,4 @@
-//! Random frames and places, turned at random.
+//! Batches of random frames and locations, transformed by random symmetries.
 
 use rand::Rng;
 use twintac_learn::Matrix;
@@ -8,51 +8,51 @@ use super::Frames;
 use crate::layout::Layout;
 use crate::network::Turn;
 
-/// A place of the floor in a frame, as it is shown.
+/// A location of the base in a frame, and the symmetry that is applied.
 pub(super) struct PressurePick {
     frame: usize,
     place: usize,
     turn: Turn,
 }
 
-/// A frame, as it is shown.
+/// A frame, and the axes that are mirrored.
 pub(super) struct GridPick {
     frame: usize,
     mirrored: [bool; 2],
 }
 
-/// What is learned of the pressure.
+/// A batch for the network of pressures.
 pub(super) struct PressureBatch {
-    /// What touches around places of the floor. `[n_picks][n_patch_inputs]`
+    /// Inputs of the patches around locations of the base. `[n_picks][n_patch_inputs]`
     pub(super) inputs: Matrix,
-    /// The pressure there, over the largest of the press. `[n_picks]`
+    /// The pressure at the location, over the largest pressure of the press. `[n_picks]`
     pub(super) pressure: Vec<f32>,
     /// The largest pressure of each row's press, kPa. `[n_picks]`
     pub(super) largest_kpa: Vec<f32>,
 }
 
-/// What is learned of force and torque.
+/// A batch for the network of force and torque.
 pub(super) struct WrenchBatch {
-    /// What touches anywhere. `[n_picks][n_field_inputs]`
+    /// Inputs of the whole grid. `[n_picks][n_field_inputs]`
     pub(super) inputs: Matrix,
-    /// `[n_picks]`
+    /// Force, N, and torque, N mm. `[n_picks]`
     pub(super) wrench: Vec<[f32; 6]>,
     /// The largest force of each press, N. `[n_picks]`
     pub(super) largest_n: Vec<f32>,
 }
 
-/// What is learned of all taxels at once.
+/// A batch for the network of all taxels.
 pub(super) struct TaxelBatch {
-    /// What touches anywhere. `[n_picks][n_field_inputs]`
+    /// Inputs of the whole grid. `[n_picks][n_field_inputs]`
     pub(super) inputs: Matrix,
-    /// Their pressures over the largest of the press. `[n_picks * n_taxels]`
+    /// The taxels' pressures over the largest pressure of the press. `[n_picks * n_taxels]`
     pub(super) pressure: Vec<f32>,
     /// The largest pressure of each press, kPa. `[n_picks]`
     pub(super) largest_kpa: Vec<f32>,
 }
 
 impl PressureBatch {
-    /// So many places of each of so many frames.
+    /// Picks `n_places` locations of each of `n_frames` frames.
     pub(super) fn picks(
         frames: &Frames,
         [n_frames, n_places]: [usize; 2],
@@ -92,7 +92,7 @@ impl PressureBatch {
 }
 
 impl GridPick {
-    /// So many frames, mirrored across x and across y where that is allowed.
+    /// Picks frames, mirrored across x and across y at random where the gel is symmetric.
     pub(super) fn picks(
         frames: &Frames,
         n_frames: usize,
@@ -106,7 +106,7 @@ impl GridPick {
         picks.collect()
     }
 
-    /// The whole grid of each pick.
+    /// Inputs of the whole grid for each pick.
     fn inputs(frames: &Frames, layout: &Layout, picks: &[Self]) -> Matrix {
         let mut inputs = Matrix::zeros(0, layout.n_field_inputs());
         inputs.values.reserve(picks.len() * layout.n_field_inputs());
@@ -133,7 +133,7 @@ impl WrenchBatch {
 }
 
 impl TaxelBatch {
-    /// `mirrored_taxels`: which taxel each is in the mirror image across x and across y.
+    /// `mirrored_taxels`: for each taxel, the number of its mirror image across x and across y.
     pub(super) fn of(
         frames: &Frames,
         layout: &Layout,
@@ -164,9 +164,9 @@ impl TaxelBatch {
     }
 }
 
-/// A force and a torque seen in mirrors across x and across y.
+/// A force and a torque, mirrored across x and across y.
 fn mirror_wrench([fx, fy, fz, tx, ty, tz]: [f32; 6], mirrored: [bool; 2]) -> [f32; 6] {
     let [x, y] = mirrored.map(|is_mirrored| if is_mirrored { -1.0 } else { 1.0 });
-    // A torque turns the other way in a mirror, but for its component across the mirror.
+    // A mirror reverses a torque, except for its component across the mirror.
     [x * fx, y * fy, fz, y * tx, x * ty, x * y * tz]
 }

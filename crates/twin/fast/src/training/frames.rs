@@ -1,4 +1,4 @@
-//! Lessons as a network sees them.
+//! Training presses as inputs and targets of the networks.
 
 use glam::{DVec2, DVec3};
 use rand::Rng;
@@ -9,61 +9,64 @@ use crate::contact::ContactPoints;
 use crate::layout::Layout;
 use crate::{Body, Lesson};
 
-/// Gaps between gel and shape at which nothing is felt are evenly spread up to these, mm: one each for each lesson.
+/// Largest gaps between gel and shape of the two added frames without contact, mm: each training
+/// press gets one gap up to each, evenly spread over the presses.
 const HOVER_MM: [f64; 2] = [0.5, 2.0];
 
-/// By which part of them the gap grows from lesson to lesson: two numbers whose multiples spread evenly together (Roberts, 2018, "The unreasonable effectiveness
-/// of quasirandom sequences").
+/// Fraction of the largest gap by which the gap grows from press to press (modulo 1): two numbers
+/// whose multiples are evenly spread together (Roberts, 2018, "The unreasonable effectiveness of
+/// quasirandom sequences").
 const SPREAD: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
-/// Least share of the floor's largest pressure by which errors are weighed.
+/// The scale of pressure errors is at least this fraction of the largest pressure at the base.
 const LEAST_SHARE: f32 = 0.3;
 
-/// One moment of a lesson.
+/// One frame of a training press.
 pub(crate) struct TaughtFrame {
-    /// The number of its lesson.
+    /// Number of its press.
     pub(crate) lesson: usize,
     /// `[n_points * N_CHANNELS]`
     pub(crate) inputs: Vec<f32>,
     /// Length of the mesh's edges, mm.
     pub(crate) edge_mm: f32,
-    /// Pressure at each place, kPa.
+    /// Pressure at each location, kPa.
     pub(crate) floor_kpa: Vec<f32>,
     /// Force, N, and torque about the top of the gel's middle, N mm.
     pub(crate) wrench: [f32; 6],
-    /// Largest pressure that ports read during the whole press, kPa.
+    /// Scale of the errors, kPa: the largest pressure at the ports during the whole press, but at
+    /// least [`LEAST_SHARE`] of the largest at the base.
     pub(crate) largest_kpa: f32,
-    /// Largest force of the whole press, N.
+    /// The largest force of the whole press, N.
     pub(crate) largest_n: f32,
 }
 
-/// Lessons of one sensor.
+/// Training presses of one sensor.
 pub(crate) struct Frames {
     pub(crate) frames: Vec<TaughtFrame>,
-    /// Places whose pressure is taught, those of the taxels first.
+    /// Locations whose pressure is trained, those of the taxels first.
     pub(crate) places: Vec<TaughtPlace>,
-    /// How many of them are a taxel's.
+    /// Number of taxels.
     pub(crate) n_taxels: usize,
 }
 
-/// A place of the floor that is below a point of a grid.
+/// A location of the base that is below a point of a grid.
 pub(crate) struct TaughtPlace {
-    /// Its number among the lessons' places.
+    /// Its number among the locations of the training presses.
     pub(crate) number: usize,
     /// The grid's number, and column and row of the point.
     pub(crate) grid: usize,
     pub(crate) cell: [i32; 2],
-    /// Where it is, mm.
+    /// Its position, mm.
     pub(crate) at: DVec2,
 }
 
 impl Frames {
-    /// A place at random.
+    /// The index of a random location.
     pub(crate) fn any_place(&self, random: &mut RandomStream) -> usize {
         random.random_range(0..self.places.len())
     }
 
-    /// The number of a frame at random.
+    /// The index of a random frame.
     pub(crate) fn any(&self, random: &mut RandomStream) -> usize {
         random.random_range(0..self.frames.len())
     }
@@ -83,7 +86,8 @@ impl Frames {
                 let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa[..n]);
                 floor.copied().fold(f32::MIN_POSITIVE, f32::max)
             };
-            // A press far from all ports is judged by what they read, but not by next to nothing.
+            // The errors of a press far from all ports are relative to the pressures at the ports,
+            // but not to almost zero.
             let largest_kpa = largest(n_taxels).max(LEAST_SHARE * largest(places_mm.len()));
             let forces = lesson.frames.iter().map(|frame| frame.force_n.length() as f32);
             let largest_n = forces.fold(f32::MIN_POSITIVE, f32::max);
@@ -106,7 +110,7 @@ impl Frames {
                 let wrench = [fx, fy, fz, torque.x, torque.y, torque.z].map(|value| value as f32);
                 teach(frame.gel_from_indenter, frame.floor_kpa.clone(), wrench);
             }
-            // What only hovers is not felt.
+            // Frames without contact: their targets are zero.
             let Some(touch) = lesson.touch() else {
                 continue;
             };

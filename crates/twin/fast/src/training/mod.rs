@@ -1,4 +1,4 @@
-//! Training on lessons.
+//! Training on presses.
 
 mod batch;
 mod frames;

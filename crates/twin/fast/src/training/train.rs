@@ -1,4 +1,4 @@
-//! The steps of training.
+//! The training loop.
 
 use std::ops::Range;
 
@@ -14,40 +14,41 @@ use crate::layout::Layout;
 use crate::network::LocalNetwork;
 use crate::networks::{Networks, PRESSURE_KPA, WRENCH};
 
-/// Part of the steps over which the learning rate rises.
+/// Fraction of the steps over which the learning rate rises.
 const RISE: f64 = 0.02;
 
-/// Errors this small count by their square, larger ones by their size.
+/// Errors below this size count quadratically, larger ones linearly.
 const SMALL: f32 = 3e-3;
 
-/// What an error counts where there is no pressure, over what it counts where the pressure is the press's largest and as much.
+/// Weight of an error where the pressure is zero. The weight grows by the pressure as a fraction of
+/// the press's largest.
 const QUIET: f32 = 0.2;
 
-/// Lever arm by which torques count as forces, mm.
+/// Lever arm by which torques are divided to count as forces, mm.
 const ARM_MM: f32 = 8.0;
 
-/// Picks that a thread goes through together: few enough that their matrices stay in its cache.
+/// Samples that a thread processes together: few enough that their matrices stay in its cache.
 const N_TOGETHER: usize = 64;
 
-/// How the networks are trained.
+/// Settings of the training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrainSettings {
-    /// Steps of the optimizer.
+    /// Number of steps of the optimizer.
     pub n_steps: usize,
-    /// Frames of a step.
+    /// Frames in each step.
     pub n_frames: usize,
-    /// Places of the floor of each frame.
+    /// Locations of the base for each frame.
     pub n_places: usize,
     /// The largest learning rate.
     pub learning_rate: f64,
-    /// Decay of the weights.
+    /// Weight decay.
     pub weight_decay: f64,
     /// Features of each point of the grid.
     pub n_features: usize,
-    /// Hidden units for the pressure at a place.
+    /// Hidden units of each layer of the network of pressures.
     pub pressure_hidden: Vec<usize>,
-    /// Hidden units for force and torque.
+    /// Hidden units of each layer of the network of force and torque.
     pub wrench_hidden: Vec<usize>,
 }
 
@@ -66,35 +67,38 @@ impl Default for TrainSettings {
     }
 }
 
-/// How training goes.
+/// Progress of the training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrainProgress {
     /// Steps that are done.
     pub step: usize,
-    /// How many there will be.
+    /// Number of all steps.
     pub of: usize,
-    /// Mean error of the pressures since the last report, as part of each press's largest.
+    /// Mean error of the pressures since the last report, as a fraction of each press's largest
+    /// pressure.
     pub pressure: f32,
-    /// Mean error of forces and torques, as part of each press's largest force.
+    /// Mean error of forces and torques since the last report, as a fraction of each press's
+    /// largest force.
     pub wrench: f32,
 }
 
-/// Steps between reports.
+/// Number of steps between reports.
 pub const REPORT_STEPS: usize = 100;
 
-/// What is trained on, and how.
+/// Training data and settings.
 pub(crate) struct Course<'a> {
     pub(crate) frames: &'a Frames,
     pub(crate) layout: &'a Layout,
     pub(crate) settings: &'a TrainSettings,
     /// Whether the gel is its own mirror image across x and across y.
     pub(crate) is_symmetric: [bool; 2],
-    /// Whether taxels get a network of their own: which taxel each is in the mirror image across x and across y, if they have one.
+    /// Whether the taxels get a network of their own: then, for each axis, the number of each
+    /// taxel's mirror image, if all taxels have one.
     pub(crate) mirrored_taxels: Option<[Option<Vec<usize>>; 2]>,
     pub(crate) seed: u64,
 }
 
-/// Trains the networks side by side; none knows of the others.
+/// Trains the networks in parallel and independently of each other.
 pub(crate) fn train(course: &Course<'_>, progress: &mut dyn FnMut(TrainProgress)) -> Networks {
     let Course {
         frames,
@@ -190,7 +194,7 @@ struct Training {
 }
 
 impl Training {
-    /// Random weights for so many points and inputs in all, hidden units and outputs.
+    /// Random weights for these numbers of points, inputs, hidden units and outputs.
     fn new(
         name: &str,
         course: &Course<'_>,
@@ -214,8 +218,9 @@ impl Training {
         }
     }
 
-    /// Takes steps on what is picked at random. `batch` makes inputs of some of it, and their loss: sums of errors, and slopes of outputs. Threads share the picks;
-    /// their slopes are added up in the order of the picks. Returns the mean error.
+    /// Takes steps on random samples. `batch` makes inputs of some samples, and their loss: the sum
+    /// of errors, and the gradient of the outputs. The samples are distributed over threads; the
+    /// gradients are added in the order of the samples. Returns the mean error.
     fn steps<P: Sync, L: FnOnce(&Matrix) -> (f32, Matrix)>(
         &mut self,
         steps: Range<usize>,
@@ -255,19 +260,20 @@ impl Training {
     }
 }
 
-/// Rises at first, then falls to zero along a cosine.
+/// Learning rate as a fraction of the largest: it rises first, then falls to zero along a cosine.
 fn schedule(part: f64) -> f64 {
     let fall = 0.5 * (1.0 + (std::f64::consts::PI * part).cos());
     (part / RISE).min(1.0) * fall
 }
 
-/// A smooth size of an error, and its slope.
+/// A smooth absolute value of an error, and its derivative.
 fn size(error: f32) -> (f32, f32) {
     let size = (error * error + SMALL * SMALL).sqrt();
     (size, error / size)
 }
 
-/// Sum over rows of the mean error over the press's largest pressure, and the slope of the outputs. `pressure` has as many rows and columns as the output.
+/// Sum over rows of the mean error over the press's largest pressure, and the gradient of the
+/// outputs. `pressure` has as many rows and columns as the output.
 fn pressure_loss(output: &Matrix, pressure: &[f32], largest_kpa: &[f32]) -> (f32, Matrix) {
     let n_columns = output.n_columns;
     let mut slope = Matrix::zeros(output.n_rows(), n_columns);
@@ -283,7 +289,8 @@ fn pressure_loss(output: &Matrix, pressure: &[f32], largest_kpa: &[f32]) -> (f32
     (sum * share, slope)
 }
 
-/// Sum over frames of the mean error over the press's largest force, and the slope of the outputs.
+/// Sum over frames of the mean error over the press's largest force, and the gradient of the
+/// outputs.
 fn wrench_loss(output: &Matrix, wrench: &[[f32; 6]], largest_n: &[f32]) -> (f32, Matrix) {
     let mut slope = Matrix::zeros(output.n_rows(), 6);
     let mut sum = 0.0;

@@ -1,4 +1,4 @@
-//! A press in steps that are held, watched by the inverse.
+//! Contact estimation on a press in steps that are held.
 
 use std::error::Error;
 use std::time::Instant;
@@ -12,17 +12,17 @@ use twintac_sensor::Sensor;
 
 use crate::presses::Solved;
 
-/// Frames a second, and how many a step is held.
+/// Frames per second, and the number of frames for which a step is held.
 const RATE_HZ: f64 = 100.0;
 const HELD: usize = 20;
 
 /// Noise of the readings, kPa.
 const NOISE_KPA: f64 = 0.05;
 
-/// Distance of a map's points, mm.
+/// Spacing of a map's points, mm.
 const SPACING_MM: f64 = 0.5;
 
-/// What was found at the end of a held step, and what was true.
+/// Estimated and true values at the end of a held step.
 pub(crate) struct Watched {
     pub(crate) shape: usize,
     pub(crate) told: usize,
@@ -30,25 +30,26 @@ pub(crate) struct Watched {
     pub(crate) step: usize,
     pub(crate) is_over_taxels: bool,
     pub(crate) place_error_mm: f64,
-    /// Errors over the deviations that were stated: x, y, depth, force.
+    /// Errors over the estimated deviations: x, y, depth, force.
     pub(crate) over_deviation: [f64; 4],
     pub(crate) depth_mm: f64,
     pub(crate) depth_percent: f64,
     pub(crate) force_percent: f64,
-    /// From the true place to the largest value of the interpolated map, mm.
+    /// Distance from the true location to the largest value of the interpolated map, mm.
     pub(crate) peak_error_mm: f64,
-    /// Root mean square error over the floor, % of its largest pressure: of the contact's map, and of the interpolated one.
+    /// Root mean square error over the base of the gel, % of its largest pressure: of the contact's
+    /// map, and of the interpolated one.
     pub(crate) floor_percent: [f64; 2],
 }
 
-/// What watching needs.
+/// Sensor, models and maps for the evaluation.
 pub(crate) struct Judge {
     taxels_mm: Vec<DVec2>,
     places_mm: Vec<DVec2>,
     height_mm: f64,
     floor: FastReader,
     map: PreparedMap,
-    /// Of each frame: seconds, and whether it was the first in contact.
+    /// For each frame: computing time, s, and whether it was the first in contact.
     times: Vec<(f64, bool)>,
 }
 
@@ -85,7 +86,7 @@ impl Judge {
         })
     }
 
-    /// Watches a press; `shape` is its number among the inverse's.
+    /// Evaluates one press. `shape` is its index among the known shapes.
     pub(crate) fn watch(
         &mut self,
         number: usize,
@@ -131,7 +132,8 @@ impl Judge {
         Ok(watched)
     }
 
-    /// The interpolated map's largest place, and the errors of both maps of the floor.
+    /// The location of the largest value of the interpolated map, and the errors of both maps of
+    /// the base.
     fn maps(
         &mut self,
         readings_kpa: &[f64],
@@ -166,7 +168,8 @@ impl Judge {
         Ok((low + SPACING_MM * (peak + 0.5), floor_percent))
     }
 
-    /// Time of a frame, µs: median, 99 of 100, and the median of first frames in contact.
+    /// Computing time of a frame, µs: median, 99th percentile, and the median of first frames in
+    /// contact.
     pub(crate) fn microseconds(&self) -> [f64; 3] {
         let sorted = |is_first: bool| {
             let times = self.times.iter().filter(|(_, first)| *first == is_first);

@@ -1,7 +1,9 @@
-//! Judges the inverse on presses of PhysTac's solved gel, which the fast gel never saw: `cargo run --release -p twintac-inverse --example judge`.
+//! Evaluates contact estimation on FEM solutions of presses on PhysTac's gel that were not used for
+//! training the surrogate: `cargo run --release -p twintac-inverse --example judge`.
 //!
-//! The sensor's seven indenters press upright at random places, to random depths, at random spins, in five steps that are held. Readings are the
-//! solved gel's with noise. Solved presses are kept in `runs/inverse`, the judgement is written to `docs/results/inverse.json`.
+//! The sensor's seven indenters press upright at random locations, to random depths, at random yaw
+//! angles, in five steps that are held. Readings are those of the FEM solution, with noise. Solved
+//! presses are stored in `runs/inverse`; the result is written to `docs/results/inverse.json`.
 
 #![allow(clippy::print_stdout)] // a program
 

@@ -1,4 +1,4 @@
-//! Presses of the solved gel.
+//! FEM solutions of presses.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -14,16 +14,16 @@ use twintac_random::stream;
 use twintac_sensor::Sensor;
 use twintac_teach::Teacher;
 
-/// Presses of each shape.
+/// Number of presses of each shape.
 const OF_EACH: usize = 10;
 
-/// How far from the gel's edges a shape's origin stays, mm.
+/// Distance that a shape's origin keeps from the gel's edges, mm.
 const MARGIN_MM: f64 = 3.0;
 
-/// Depths of the deepest frame, mm.
+/// Range of the largest depth of a press, mm.
 const DEPTHS_MM: std::ops::Range<f64> = 1.5..4.0;
 
-/// A solved press.
+/// The FEM solution of a press.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Solved {
     pub(crate) shape: usize,
@@ -33,7 +33,7 @@ pub(crate) struct Solved {
     pub(crate) lesson: Lesson,
 }
 
-/// All presses; those whose files are there are not solved again.
+/// All presses. Those with a stored file are not solved again.
 pub(crate) fn solved(
     sensor: &Sensor,
     shapes: &[KnownShape],

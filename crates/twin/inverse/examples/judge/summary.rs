@@ -1,4 +1,4 @@
-//! What all presses come to.
+//! Summary of all presses.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use twintac_inverse::{InverseSettings, KnownShape};
 
 use crate::held::Watched;
 
-/// All that is found.
+/// The complete result.
 #[derive(Serialize)]
 pub(crate) struct Judgement {
     pub(crate) command: String,
@@ -19,11 +19,12 @@ pub(crate) struct Judgement {
     pub(crate) prepared_s: f64,
     pub(crate) shapes_to_tell: Summary,
     pub(crate) shape_given: Summary,
-    /// Median, 99 of 100, and median of first frames in contact; seven shapes, one core.
+    /// Median, 99th percentile, and median of first frames in contact, for seven shapes on one
+    /// core.
     pub(crate) microseconds_a_frame: [f64; 3],
 }
 
-/// Groups of steps.
+/// Results by groups of steps.
 #[derive(Serialize)]
 pub(crate) struct Summary {
     all: Group,
@@ -33,11 +34,11 @@ pub(crate) struct Summary {
     below_1_mm: Group,
     deepest_steps: Group,
     by_shape: BTreeMap<String, Group>,
-    /// For each shape, how often each was told at the deepest step.
+    /// For each true shape, how often each shape was found at the deepest step.
     told_at_deepest: BTreeMap<String, BTreeMap<String, usize>>,
 }
 
-/// Medians of errors.
+/// Median errors.
 #[derive(Serialize)]
 pub(crate) struct Group {
     n: usize,
@@ -49,7 +50,7 @@ pub(crate) struct Group {
     shape_told_percent: f64,
     floor_percent: f64,
     interpolated_floor_percent: f64,
-    /// How often errors of x, y, depth and force are within two of the deviations that were stated, %.
+    /// How often errors of x, y, depth and force are within two of the estimated deviations, %.
     within_two_deviations_percent: [f64; 4],
 }
 

@@ -1,4 +1,4 @@
-//! Results that nobody measured, in the shape of results that somebody could.
+//! Invented results in the form of real ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use twintac_report::{Making, StageTime, TrainedVariant, TwinReport};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
-/// What a [`TwinReport`] borrows.
+/// The data that a [`TwinReport`] borrows.
 pub(crate) struct Results {
     pub(crate) sensor: Sensor,
     pub(crate) provenance: Provenance,
@@ -56,7 +56,7 @@ impl Results {
     }
 }
 
-/// A repeatable number in [-1, 1] that looks random.
+/// A reproducible number in [-1, 1] that looks random.
 fn ripple(index: usize) -> f64 {
     let x = (index as f64 * 12.9898).sin() * 43_758.547;
     2.0 * (x - x.floor()) - 1.0

@@ -1,4 +1,5 @@
-//! The page of a twin from invented data, to look at: `cargo run -p twintac-report --release --example invented_report [folder]`.
+//! Makes two report pages from invented data:
+//! `cargo run -p twintac-report --release --example invented_report [folder]`.
 
 mod invented;
 

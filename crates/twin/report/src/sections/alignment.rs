@@ -1,4 +1,4 @@
-//! How measured and simulated times were matched.
+//! Alignment of measured and simulated times.
 
 use digitac::PairedPress;
 use twintac_plot::page::Block;
@@ -7,7 +7,7 @@ use twintac_plot::{Ink, PALETTE, Panels, Scene, Series};
 use super::parts::{chart, figure, line};
 use crate::TwinReport;
 
-/// Presses shown, at most.
+/// Largest number of presses that are shown.
 const MOST_SHOWN: usize = 6;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
@@ -25,8 +25,8 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
         return Vec::new();
     }
     let chart = chart("Shift of the measurement", ["time, s", "shift, s"], lines);
-    let caption = "Time of the measured frame that is matched to each simulated frame, minus that frame's own time. Flat \
-                   and near zero: the two clocks agree. A wandering line: the match bends time to hide an error.";
+    let caption = "Time of the measured frame that is matched to each simulated frame, minus that frame's own time. A flat \
+                   line near zero means that the two clocks agree. A line that varies means that the matching distorts time and may hide an error.";
     vec![Block::Figures(vec![figure(
         chart.scene(),
         report.provenance,
@@ -53,7 +53,8 @@ pub fn warp_plot(presses: &[PairedPress]) -> Scene {
     .scene()
 }
 
-/// Time since `begin_s`, and how far ahead the measured frame is that belongs to it, s.
+/// For each simulated frame: its time since `begin_s`, and the time of the matched measured frame
+/// minus its own, s.
 fn shift(press: &PairedPress, begin_s: f64) -> Vec<[f64; 2]> {
     let time_s = &press.features.time_s;
     let at = |index: f64| {

@@ -1,4 +1,4 @@
-//! What was fitted about the bench.
+//! The calibration of the test setup.
 
 use digitac::Estimate;
 use twintac_plot::page::{Block, Cell, Row, Table};
@@ -19,8 +19,8 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     let offsets = bench.contact_offset_mm.iter();
     let rows = radius
         .map(|radius| row("tip radius".into(), radius, "mm"))
-        .chain(stiffness.map(|part| row("stiffness over the description's".into(), part, "")))
-        .chain(offsets.map(|(file, offset)| row(format!("contact deeper by, {file}"), offset, "mm")));
+        .chain(stiffness.map(|part| row("stiffness over the described one".into(), part, "")))
+        .chain(offsets.map(|(file, offset)| row(format!("contact height, {file}"), offset, "mm")));
     let table = Table {
         caption: "Fitted quantities".into(),
         head: head(["quantity", "value", "source"]),
@@ -40,7 +40,7 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
             x_label: "measured over simulated pressure".into(),
             bars: bars.collect(),
         };
-        figure(chart.scene(), report.provenance, "One number a taxel.")
+        figure(chart.scene(), report.provenance, "One gain for each taxel.")
     });
     vec![Block::Figures(gains.collect()), Block::Table(table)]
 }

@@ -55,7 +55,7 @@ pub(super) fn variants(report: &TwinReport<'_>) -> Vec<Block> {
         let error_percent = trained.test.overall.nearest_in_contact.percent;
         bar(trained.variant.name(), error_percent, ink)
     });
-    let caption = "Held-out error, nearest taxel in contact. The coloured one is the twin of this report.";
+    let caption = "Held-out error, nearest taxel in contact. The twin of this report is coloured.";
     let picture = figure(errors("Error by variant", bars), report.provenance, caption);
     let row = |trained: &TrainedVariant<'_>| Row {
         cells: vec![
@@ -69,7 +69,7 @@ pub(super) fn variants(report: &TwinReport<'_>) -> Vec<Block> {
         is_chosen: trained.is_chosen,
     };
     let table = Table {
-        caption: "Twins that were compared".into(),
+        caption: "Compared twins".into(),
         head: head(["variant", "validation", NEAREST, ALL, "", "source"]),
         rows: report.variants.iter().map(row).collect(),
     };

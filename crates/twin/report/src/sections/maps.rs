@@ -1,4 +1,4 @@
-//! Pressure maps at the peak of a press, sensor beside twin.
+//! Pressure maps at the peak of a press, of sensor and twin.
 
 use digitac::PressEvaluation;
 use twintac_map::{MapSettings, Rectangle, pitch_mm, pressure_map};
@@ -40,8 +40,9 @@ fn peak(label: &str, press: &PressEvaluation, sensor: &Sensor) -> Option<HeatMap
     )
 }
 
-/// Maps of readings above the baseline, each with its name, in one colour scale. `circle_mm` is the centre and radius of a circle to mark. `None` if they
-/// cannot be drawn: two taxels at one place.
+/// Maps of readings above the baseline, kPa, each with its name, with one colour scale.
+/// `circle_mm`: centre and radius of a circle to mark. `None` if the maps cannot be drawn, because
+/// two taxels are at one location.
 #[must_use]
 pub fn pressure_maps(
     sensor: &Sensor,
@@ -71,7 +72,7 @@ pub fn pressure_maps(
     })
 }
 
-/// The part of the gel around the taxels: a long strip is not shown whole.
+/// The part of the gel around the taxels, because a long strip would be too small if shown whole.
 fn window(sensor: &Sensor) -> Rectangle {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let (margin_mm, taxels_mm) = (high.z, taxels_mm(sensor));

@@ -1,4 +1,4 @@
-//! What several sections are put together from.
+//! Functions that several sections share.
 
 use digitac::{Evaluation, PressEvaluation};
 use twintac_plot::page::{Badge, Block, Cell, Figure};
@@ -6,7 +6,7 @@ use twintac_plot::{Bar, Bars, Ink, Panel, Panels, Scene, Series, fixed};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
-/// The headline in words.
+/// Names of the error measures; the first is the headline.
 pub(super) const NEAREST: &str = "nearest taxel in contact";
 pub(super) const ALL: &str = "all taxels, all frames";
 
@@ -27,7 +27,7 @@ pub(super) fn figure(
     }
 }
 
-/// Pictures under a text that explains them; nothing without pictures.
+/// Pictures under a text that explains them; empty without pictures.
 pub(super) fn explained(text: &str, pictures: Vec<Figure>) -> Vec<Block> {
     if pictures.is_empty() {
         return Vec::new();
@@ -47,7 +47,7 @@ pub(super) fn head<const N: usize>(names: [&str; N]) -> Vec<String> {
     names.map(str::to_owned).to_vec()
 }
 
-/// An error in %, kept on one line, with three significant digits or so; none over nothing.
+/// An error in %, kept on one line, with about three significant digits; "none" if there is none.
 pub(super) fn percent(value: impl Into<Option<f64>>) -> String {
     let Some(value) = value.into() else {
         return "none".into();
@@ -111,7 +111,8 @@ pub(super) fn taxels_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
     sensor.taxels.iter().map(place).collect()
 }
 
-/// Presses that touched and their errors, nearest taxel in contact, %, from the best to the worst.
+/// Presses with contact and their errors, nearest taxel in contact, %, from the smallest error to
+/// the largest.
 pub(super) fn ranked(evaluation: &Evaluation) -> Vec<(&PressEvaluation, f64)> {
     let presses = evaluation.presses.iter();
     let touched = presses.filter_map(|press| Some((press, press.errors.nearest_in_contact.percent?)));

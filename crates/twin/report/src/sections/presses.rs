@@ -18,7 +18,7 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
         figure(panels.scene(), report.provenance, caption)
     });
     explained(
-        "Pressure above the baseline at every taxel. Where the thin line covers the broad one, the twin is right. \
+        "Pressure above the baseline at every taxel. Where the thin line covers the broad one, the twin equals the sensor. \
          All taxels of a press share one scale.",
         pictures.collect(),
     )

@@ -1,4 +1,4 @@
-//! The headline with what it is compared to, and predictions against measurements.
+//! The headline with its comparisons, and predictions against measurements.
 
 use digitac::Errors;
 use twintac_plot::page::{Block, Card, Cell, Fact, Row, Table};
@@ -8,7 +8,7 @@ use twintac_recording::Provenance;
 use super::parts::{ALL, NEAREST, badge, bar, errors, figure, head, percent, percent_cell, usable, words};
 use crate::{PAPER_ERROR_PERCENT, TwinReport};
 
-/// Readings shown in the scatter plot, at most.
+/// Largest number of readings in the scatter plot.
 const MOST_READINGS: usize = 20_000;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
@@ -16,8 +16,8 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
                    Blue: the figure that the paper reports for another sensor and protocol (real).";
     let mut bars = figure(comparison(report), report.provenance, caption);
     bars.table = Some(table(report));
-    let caption = "Every held-out reading. On the dashed line the twin equals the sensor; the shade counts \
-                   readings logarithmically.";
+    let caption = "Every held-out reading. On the dashed line the twin equals the sensor; the shade shows \
+                   the number of readings, on a logarithmic scale.";
     let agreement = figure(density(report), report.provenance, caption);
     vec![
         Block::Cards(cards(report)),
@@ -49,16 +49,17 @@ fn cards(report: &TwinReport<'_>) -> Vec<Card> {
     cards
 }
 
-/// The twin, and what its errors are compared with, by the same measure and on the same presses.
+/// The errors of the twin and those that it is compared with, by the same measure and on the same
+/// presses.
 fn compared<'a>(report: &TwinReport<'a>) -> Vec<(&'static str, &'a Errors, Ink)> {
     let evaluation = report.evaluation;
     let polynomial = evaluation.polynomial.as_ref();
     let polynomial = polynomial.map(|score| ("static polynomial", &score.overall, Ink::Sensor));
     let kernel = evaluation.kernel.as_ref();
-    let kernel = kernel.map(|score| ("fitted curve", &score.overall, Ink::Sensor));
+    let kernel = kernel.map(|score| ("parametric baseline", &score.overall, Ink::Sensor));
     let repeats = report
         .repeatability
-        .map(|found| ("the same press again", &found.errors, Ink::Series(2)));
+        .map(|found| ("repeated press", &found.errors, Ink::Series(2)));
     [
         Some(("this twin", &evaluation.twin.overall, Ink::Twin)),
         Some(("zero", &evaluation.zero.overall, Ink::Sensor)),

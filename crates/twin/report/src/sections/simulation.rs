@@ -1,4 +1,4 @@
-//! How far the simulation can be trusted.
+//! Quality of the simulation.
 
 use twintac_depth_table::SolveQuality;
 use twintac_plot::page::{Block, Card, Fact};
@@ -23,7 +23,7 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
         .fold(f64::INFINITY, f64::min);
     let penetration = short(largest(|quality| quality.penetration_mm));
     let cards = vec![
-        card(frames().count().to_string(), "frames solved"),
+        card(frames().count().to_string(), "frames computed"),
         card(
             short(largest(|quality| quality.residual)),
             "worst relative residual",
@@ -39,7 +39,7 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     let failures = if failures.is_empty() {
         Block::Text("No simulated press failed.".into())
     } else {
-        Block::Warnings("What failed", failures)
+        Block::Warnings("Failed presses", failures)
     };
     vec![Block::Cards(cards), failures]
 }

@@ -24,8 +24,8 @@ pub(super) fn paragraphs(report: &TwinReport<'_>) -> Vec<Paragraph> {
 
 fn result(report: &TwinReport<'_>) -> String {
     let presses = match report.evaluation.presses.len() {
-        1 => "1 press that it never saw".to_owned(),
-        count => format!("{count} presses that it never saw"),
+        1 => "1 held-out press".to_owned(),
+        count => format!("{count} held-out presses"),
     };
     let source = match report.provenance {
         Provenance::Real => "real data",
@@ -54,7 +54,7 @@ fn comparison(report: &TwinReport<'_>) -> String {
     }
     if let Some(kernel) = &evaluation.kernel {
         text += &format!(
-            ", a fitted curve {}",
+            ", parametric baseline {}",
             percent(kernel.overall.nearest_in_contact.percent)
         );
     }
@@ -67,7 +67,7 @@ fn comparison(report: &TwinReport<'_>) -> String {
     }
     if let Some(repeatability) = report.repeatability {
         text += &format!(
-            " Two presses of the same place, depth and speed differ by {}.",
+            " Two presses with the same location, depth and speed differ by {}.",
             percent(repeatability.errors.nearest_in_contact.percent)
         );
     }
@@ -91,7 +91,7 @@ pub(super) fn warnings(report: &TwinReport<'_>) -> Vec<String> {
     let n_frames = report.evaluation.twin.n_frames_not_simulated;
     if n_frames > 0 {
         warnings.push(format!(
-            "{n_frames} frames are deeper than the simulation reached; what it ends with stands for them, straight on."
+            "{n_frames} frames are deeper than the simulation reached; the last simulated pressures are used for them."
         ));
     }
     warnings.extend(report.bench.doubts.iter().cloned());

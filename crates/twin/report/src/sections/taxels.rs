@@ -8,10 +8,10 @@ use super::parts::{
 };
 use crate::TwinReport;
 
-/// Bins of the depth.
+/// Number of depth intervals.
 const DEPTH_BINS: usize = 8;
 
-/// Readings below this share of the largest do not count as contact.
+/// Readings below this fraction of the largest do not count as contact.
 const CONTACT_SHARE: f64 = 0.03;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
@@ -54,7 +54,8 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     vec![Block::Figures(pictures), Block::Table(table)]
 }
 
-/// Mean signed error of a taxel, % of the largest reading of all presses; `None` without a usable reading.
+/// Mean signed error of a taxel, % of the largest reading of all presses; `None` without a usable
+/// reading.
 fn bias_percent(report: &TwinReport<'_>, taxel: usize) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0_f64);
     for (_, [measured, predicted]) in usable(report.evaluation).filter(|(of, _)| *of == taxel) {
@@ -65,7 +66,7 @@ fn bias_percent(report: &TwinReport<'_>, taxel: usize) -> Option<f64> {
     (count > 0.0 && largest_kpa > 0.0).then(|| 100.0 * sum / count / largest_kpa)
 }
 
-/// Errors of the frames between two depths.
+/// Errors of the frames in an interval of depths.
 struct DepthError {
     between_mm: [f64; 2],
     /// Nearest taxel in contact, % of the largest reading of all presses.

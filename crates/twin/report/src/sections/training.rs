@@ -11,17 +11,24 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     let pictures = report.variants.iter().map(|trained| {
         let losses = |loss: fn(&Epoch) -> f64| -> Vec<[f64; 2]> {
             let epochs = trained.history.iter().enumerate();
-            epochs.map(|(index, epoch)| [index as f64 + 1.0, loss(epoch)]).collect()
+            epochs
+                .map(|(index, epoch)| [index as f64 + 1.0, loss(epoch)])
+                .collect()
         };
         let lines = vec![
             line("training", losses(|epoch| epoch.loss), Ink::Sensor, 1.75),
-            line("validation", losses(|epoch| epoch.validation_loss), Ink::Twin, 1.75),
+            line(
+                "validation",
+                losses(|epoch| epoch.validation_loss),
+                Ink::Twin,
+                1.75,
+            ),
         ];
         let chart = Panels {
             logarithmic: true,
             ..chart(trained.variant.name(), ["epoch", "loss"], lines)
         };
-        let caption = "Where the validation loss rises while the training loss falls, the twin learns its examples by heart.";
+        let caption = "Where the validation loss rises while the training loss falls, the twin overfits.";
         figure(chart.scene(), report.provenance, caption)
     });
     vec![Block::Figures(pictures.collect())]

@@ -1,4 +1,4 @@
-//! The system's allocator, which counts what is asked of it by all threads.
+//! The system's allocator, which counts the allocations of all threads.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,21 +8,22 @@ struct Counting;
 static N_ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
 static N_BYTES: AtomicUsize = AtomicUsize::new(0);
 
-/// How often memory has been asked for.
-#[allow(dead_code)] // what a test alone needs
+/// Number of allocations so far.
+#[allow(dead_code)] // only a test needs it
 pub(crate) fn n_allocations() -> usize {
     N_ALLOCATIONS.load(Ordering::Relaxed)
 }
 
-/// The fewest allocations that several equal runs count. A thread of a pool takes memory for itself when it first takes work
-/// from another, in whichever run that is; what the run itself takes is in all of them.
-#[allow(dead_code)] // what a test alone needs
+/// The smallest count of several equal runs. A thread of a pool allocates memory for itself when it
+/// first takes work from another thread, in any of the runs. Allocations of the run itself are in
+/// all counts.
+#[allow(dead_code)] // only a test needs it
 pub(crate) fn fewest_of_runs(count: impl FnMut() -> usize) -> usize {
     std::iter::repeat_with(count).take(10).min().unwrap_or(usize::MAX)
 }
 
 /// Bytes that are in use.
-#[allow(dead_code)] // what the benchmark alone needs
+#[allow(dead_code)] // only the benchmark needs it
 pub(crate) fn n_bytes() -> usize {
     N_BYTES.load(Ordering::Relaxed)
 }
@@ -30,8 +31,8 @@ pub(crate) fn n_bytes() -> usize {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-// SAFETY: everything is passed on to the system's allocator.
-#[allow(unsafe_code)] // an allocator cannot be written without
+// SAFETY: all calls are passed on to the system's allocator.
+#[allow(unsafe_code)] // an allocator requires it
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         N_ALLOCATIONS.fetch_add(1, Ordering::Relaxed);

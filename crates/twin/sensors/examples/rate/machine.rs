@@ -1,4 +1,4 @@
-//! What it was measured on.
+//! The machine of a measurement.
 
 use std::fs;
 use std::process::Command;
@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Machine {
     pub(crate) processor: String,
     pub(crate) processors: usize,
-    /// Over the last minute, at the end: what is above the threads was other work, and made rates lower.
+    /// Mean over the last minute, at the end of the measurement. Load beyond the benchmark's
+    /// threads is other work, which lowers the rates.
     pub(crate) load_average: f64,
 }
 
 impl Machine {
-    /// This one, now; Linux alone tells.
+    /// This machine now; only Linux gives the values.
     pub(crate) fn now() -> Self {
         let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
         let model = read("/proc/cpuinfo")
@@ -34,7 +35,7 @@ impl Machine {
     }
 }
 
-/// What is checked out, as git calls it.
+/// The commit that is checked out, as `git describe` names it.
 pub(crate) fn commit() -> String {
     let output = Command::new("git")
         .args(["describe", "--always", "--dirty"])

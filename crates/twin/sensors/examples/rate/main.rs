@@ -1,7 +1,9 @@
-//! How fast sensors are stepped: `cargo xtask bench sensors` writes docs/benchmarks/sensors.*
+//! Benchmark of the rate at which sensors are stepped: `cargo xtask bench sensors` writes
+//! docs/benchmarks/sensors.*
 //!
-//! With `--rewrite`, nothing is measured: page and picture are written of the figures that are there. With `--steps BODY N`, sensors with everything are only
-//! stepped on one thread, for a profiler; BODY is `ball`, `box` or `boulder`.
+//! With `--rewrite`, nothing is measured: page and picture are written from the stored figures.
+//! With `--steps BODY N`, sensors with relaxation and all deviations are only stepped on one
+//! thread, for a profiler; BODY is `ball`, `box` or `boulder`.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -49,13 +51,13 @@ struct Results {
     moved_bytes_per_reading: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     touch_grid: Option<TouchGrid>,
-    /// Why that was not measured.
+    /// Why `touch_grid` was not measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     touch_grid_note: Option<String>,
 }
 
 impl Results {
-    /// Rate of the slowest scene with everything, readings a second.
+    /// Rate of the slowest scene with relaxation and all deviations, readings a second.
     fn slowest(&self) -> f64 {
         let with_everything = self.rates.iter().filter(|rate| rate.memory_and_imperfections);
         with_everything
@@ -63,7 +65,7 @@ impl Results {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Bytes that the slowest scene moves, as part of what one core could copy.
+    /// Bytes that the slowest scene moves, as a fraction of what one core can copy.
     fn part_of_copying(&self) -> f64 {
         self.slowest() * self.moved_bytes_per_reading / self.copied_bytes_per_s
     }
@@ -129,7 +131,7 @@ fn measure() -> Result<Results, Box<dyn Error>> {
     })
 }
 
-/// Steps sensors with everything on this thread, and measures nothing.
+/// Steps sensors with relaxation and all deviations on this thread, without measuring.
 fn steps(body: &str, n_steps: usize) -> Result<(), Box<dyn Error>> {
     let kind = match body {
         "ball" => Kind::Ball,

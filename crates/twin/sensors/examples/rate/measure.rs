@@ -1,4 +1,4 @@
-//! What is measured.
+//! The measurements.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -10,20 +10,20 @@ use serde::{Deserialize, Serialize};
 use crate::counting;
 use crate::scene::{Kind, Scene};
 
-/// Steps that are timed, and steps before them.
+/// Steps that are timed, and warm-up steps before them.
 pub(crate) const N_STEPS: usize = 300;
 pub(crate) const N_WARM_UP: usize = 20;
 
-/// Calls of a single sensor that are timed.
+/// Timed calls of a single sensor.
 const N_CALLS: usize = 5000;
 
-/// Bytes that are copied at once: more than caches hold.
+/// Bytes that are copied at once: more than the caches hold.
 const N_COPIED: usize = 256 << 20;
 
-/// Copies, of which the median counts.
+/// Copies; their median is used.
 const N_COPIES: usize = 11;
 
-/// The median of many measurements, and between what the middle 80 % of them lie.
+/// The median of many measurements, and the limits of the middle 80 % of them.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Spread {
     pub(crate) median: f64,
@@ -43,20 +43,20 @@ impl Spread {
     }
 }
 
-/// How fast a scene is stepped.
+/// Rate at which a scene is stepped.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Rate {
-    /// What presses.
+    /// The body that presses.
     pub(crate) body: String,
-    /// Whether the sensors have a twin's memory and all imperfections.
+    /// Whether the sensors have a twin's relaxation and all deviations.
     pub(crate) memory_and_imperfections: bool,
-    /// Readings of all taxels of a sensor, with force and torque.
+    /// A reading is that of all taxels of a sensor, with force and torque.
     pub(crate) readings_per_s: Spread,
-    /// Part of the sensors that felt something in the last step.
+    /// Fraction of the sensors that felt something in the last step.
     pub(crate) touched: f64,
 }
 
-/// Steps all scenes in turn, so that what else the machine does falls on all of them alike.
+/// Steps all scenes in turn, so that other work of the machine affects all of them alike.
 pub(crate) fn rates(twin: &Twin, [n_sensors, n_threads]: [usize; 2]) -> Result<Vec<Rate>, Box<dyn Error>> {
     let kinds = [Some(twin), None]
         .into_iter()
@@ -110,7 +110,8 @@ pub(crate) fn latencies(twin: &Twin) -> Result<Vec<Latency>, Box<dyn Error>> {
     Kind::ALL.into_iter().map(latency).collect()
 }
 
-/// Bytes that sensors with everything hold, over their number. What they share, and the body, is counted as well.
+/// Bytes that sensors with relaxation and all deviations take, divided by their number. Shared data
+/// and the body are included.
 pub(crate) fn bytes_per_sensor(
     twin: &Twin,
     [n_sensors, n_threads]: [usize; 2],

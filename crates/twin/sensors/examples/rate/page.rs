@@ -7,7 +7,7 @@ use twintac_plot::{Bar, Bars, Ink, Scene};
 use crate::Results;
 use crate::measure::Spread;
 
-/// Bars of the rates, with what MuJoCo does.
+/// Bars of the rates, with MuJoCo's.
 pub(crate) fn chart(results: &Results) -> Scene {
     let bar = |name: String, ink: Ink, rate: &Spread| Bar {
         name,

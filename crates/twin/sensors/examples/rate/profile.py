@@ -1,6 +1,8 @@
-"""Instructions of a step by function: `python3 crates/twin/sensors/examples/rate/profile.py` writes docs/benchmarks/sensors-profile.md.
+"""Counts the instructions of a step by function:
+`python3 crates/twin/sensors/examples/rate/profile.py` writes docs/benchmarks/sensors-profile.md.
 
-Counts with Valgrind's callgrind, instruction by instruction; what was inlined is told apart by the program's line tables (`addr2line`).
+Valgrind's callgrind counts every instruction. The program's line tables (`addr2line`) assign the
+instructions of inlined functions.
 """
 
 import collections
@@ -53,7 +55,7 @@ def counts(program, body):
 
 
 def functions(program, own):
-    """Instructions by the innermost of our functions and its file."""
+    """Instructions by the innermost function of this project, and its file."""
     asked = "\n".join(hex(address) for address in own)
     command = ["addr2line", "-a", "-i", "-f", "-C", "-e", program]
     lines = subprocess.run(command, input=asked, capture_output=True, text=True, check=True).stdout.splitlines()

@@ -1,4 +1,4 @@
-//! What is pressed into the sensors: bodies that slide and tilt at every step.
+//! The scenes: bodies that slide and tilt at every step.
 
 use std::error::Error;
 
@@ -11,7 +11,7 @@ use twintac_shape::{Pose, Shape, SurfaceFile, Surfaces};
 /// Taxels of a sensor.
 pub(crate) const N_TAXELS: usize = 8;
 
-/// Bytes of a pose that a step takes, and of the readings and the wrench that it gives.
+/// Bytes of the pose that a step takes, and of the readings and the wrench that it gives.
 pub(crate) const N_BYTES_MOVED: usize =
     size_of::<Touch>() + N_TAXELS * size_of::<f32>() + size_of::<[f32; 6]>();
 
@@ -21,7 +21,7 @@ const STEP_S: f64 = 0.01;
 /// Height of the gel, mm.
 const HEIGHT_MM: f64 = 8.5;
 
-/// All imperfections that there are.
+/// All deviations that a sensor may have.
 const IMPERFECTION: &str = "
 [imperfection]
 gain_deviation = 0.05
@@ -43,7 +43,7 @@ turn_deviation_rad = 0.01
 tilt_deviation_rad = 0.01
 ";
 
-/// What presses.
+/// The body that presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     Ball,
@@ -80,7 +80,7 @@ impl Kind {
     }
 }
 
-/// Sensors, and what touches them.
+/// Sensors, and the bodies that touch them.
 pub(crate) struct Scene {
     sensors: SensorBatch,
     bodies: [Body; 1],
@@ -92,7 +92,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// So many sensors for so many threads; with a twin's memory and all imperfections, or with neither.
+    /// Sensors for this number of threads; with a twin's relaxation and all deviations, or with
+    /// neither.
     pub(crate) fn new(
         kind: Kind,
         twin: Option<&Twin>,
@@ -120,7 +121,8 @@ impl Scene {
         })
     }
 
-    /// Moves every body on: 16 mm to and fro along x, 8 mm along y, 0.5 to 2.5 mm deep, tilted by up to 0.2 radians about two axes.
+    /// Moves every body: 16 mm to and fro along x, 8 mm along y, 0.5 to 2.5 mm deep, tilted by up
+    /// to 0.2 radians about two axes.
     pub(crate) fn move_on(&mut self) {
         for (sensor, touch) in self.touches.iter_mut().enumerate() {
             let phase = 0.02 * self.n_steps as f64 + 0.1 * sensor as f64;
@@ -135,7 +137,7 @@ impl Scene {
     }
 
     /// Steps every sensor once.
-    #[inline(never)] // profilers look for it
+    #[inline(never)] // profilers look for this function
     pub(crate) fn step(&mut self) {
         self.sensors.step(
             STEP_S,
@@ -147,13 +149,13 @@ impl Scene {
         );
     }
 
-    /// Part of the sensors that feel a force.
+    /// Fraction of the sensors that feel a force.
     pub(crate) fn touched(&self) -> f64 {
         let felt = self.wrench.iter().filter(|wrench| wrench[2].abs() > 0.01);
         felt.count() as f64 / self.wrench.len() as f64
     }
 
-    /// Sum of all readings and forces: another one where another way to compute them gives other numbers.
+    /// Sum of all readings and forces, to compare two versions of the code.
     pub(crate) fn sum(&self) -> f64 {
         let forces = self.wrench.as_flattened().iter();
         self.readings_kpa

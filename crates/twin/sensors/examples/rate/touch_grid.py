@@ -1,6 +1,8 @@
-"""A ball that slides over a flat pad, felt by MuJoCo's sensor plugin `touch_grid` of 4 x 2 cells.
+"""A ball that slides over a flat pad, measured by MuJoCo's sensor plugin `touch_grid` with 4 x 2
+cells.
 
-Called with one JSON: how many scenes, threads and steps. Prints one JSON: version and seconds of each step.
+The argument is a JSON object: the numbers of scenes, threads and steps. Prints a JSON object: the
+version, and the duration of each step, s.
 """
 
 import json

@@ -1,4 +1,4 @@
-//! MuJoCo's touch sensor beside ours, in the same run.
+//! MuJoCo's touch sensor, measured in the same run.
 
 use std::error::Error;
 use std::path::Path;
@@ -9,21 +9,21 @@ use serde_json::json;
 
 use crate::measure::{N_STEPS, N_WARM_UP, Spread};
 
-/// What was found of it.
+/// Figures of MuJoCo's sensor.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct TouchGrid {
-    /// Of MuJoCo.
+    /// Version of MuJoCo.
     pub(crate) version: String,
     pub(crate) cells: usize,
-    /// Part of the scenes in which a cell felt something.
+    /// Fraction of the scenes in which a cell felt something.
     pub(crate) touched: f64,
-    /// Cells that felt something, of those that felt anything, in the mean.
+    /// Mean number of cells that felt something, in the scenes with such a cell.
     pub(crate) cells_touched: f64,
-    /// Steps of one scene, with its sensor.
+    /// Steps of one scene, with its sensor, in a second.
     pub(crate) steps_per_s: Spread,
 }
 
-/// What the script prints.
+/// Output of the script.
 #[derive(Deserialize)]
 struct Printed {
     version: String,
@@ -33,7 +33,8 @@ struct Printed {
     seconds: Vec<f64>,
 }
 
-/// As many scenes on as many threads; or why there is none. A Python that `TWINTAC_PYTHON` names has to have the package.
+/// Measures as many scenes on as many threads, or says why it could not. A Python interpreter that
+/// `TWINTAC_PYTHON` names must have the package.
 pub(crate) fn measure(
     [n_scenes, n_threads]: [usize; 2],
 ) -> Result<Result<TouchGrid, String>, Box<dyn Error>> {

@@ -1,4 +1,4 @@
-//! What counts as following an edge.
+//! Tests of the progress that counts.
 
 use super::*;
 

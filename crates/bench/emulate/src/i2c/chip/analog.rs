@@ -1,17 +1,18 @@
-//! What is before a chip's registers: time, noise, and a converter.
+//! The analog part of a chip, before its registers: timing, noise and the converter.
 
 use twintac_random::{RandomStream, normal};
 
 use super::felt::{Felt, Now};
 use crate::clock::nanoseconds;
 
-/// A part's own time and noise.
+/// Timing and noise of one part.
 #[derive(Debug)]
 pub(in crate::i2c) struct Analog {
     random: RandomStream,
-    /// This part's time, relative to others'.
+    /// Ratio of this part's times to the usual times.
     slowness: f64,
-    /// Deviation that the board's settings give to all chips, Pa; `None`: the data sheet's.
+    /// Standard deviation that the board's settings give to all chips, Pa. `None`: that of the data
+    /// sheet.
     noise_pa: Option<f64>,
 }
 
@@ -38,7 +39,7 @@ impl Analog {
         }
     }
 
-    /// A time of this part, s, where a usual one takes so long.
+    /// The time of this part, s, for the usual time `usual_s`.
     pub(super) fn time_s(&self, usual_s: f64) -> f64 {
         self.slowness * usual_s
     }
@@ -61,7 +62,8 @@ impl Analog {
         under_way.take_if(|conversion| conversion.ends_ns <= now.ns && !now.is_endless)
     }
 
-    /// What a conversion finds: with noise, Pa, and closest to what was half-way, as it averages.
+    /// The result of a conversion: the values in the middle of its time, because a conversion
+    /// averages, with noise, Pa.
     pub(super) fn measure<T>(&mut self, conversion: &Conversion<T>, noise_pa: f64, now: &Now<'_>) -> Felt {
         let felt = (now.felt)(conversion.begun_ns.midpoint(conversion.ends_ns));
         let noise_pa = normal(&mut self.random, self.noise_pa.unwrap_or(noise_pa));
@@ -71,13 +73,14 @@ impl Analog {
         }
     }
 
-    /// A number that parts differ in by so much, as a fraction.
+    /// A value that differs between parts, with the standard deviation `spread` as a fraction.
     pub(super) fn about(&mut self, usual: f64, spread: f64) -> f64 {
         usual * (1.0 + normal(&mut self.random, spread))
     }
 }
 
-/// The number from `lowest` to `highest` for which a monotonic function comes closest to `target`: what a converter counts.
+/// The number from `lowest` to `highest` for which a monotonic function comes closest to `target`:
+/// the counts of a converter.
 pub(super) fn counts_of(target: f64, lowest: i64, highest: i64, function: impl Fn(f64) -> f64) -> i64 {
     let rises = function(highest as f64) > function(lowest as f64);
     let (mut low, mut high) = (lowest, highest);

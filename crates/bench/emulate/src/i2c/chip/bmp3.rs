@@ -1,4 +1,5 @@
-//! The BMP384, BMP388 and BMP390: data sheet DS002-07, rev 1.7. FIFO, filter, interrupts and the normal mode are left out.
+//! The BMP384, BMP388 and BMP390: data sheet DS002-07, rev 1.7. FIFO, filter, interrupts and the
+//! normal mode are not emulated.
 
 use super::analog::{Analog, Conversion, counts_of};
 use super::emulated_chip::{EmulatedChip, Make};
@@ -20,7 +21,7 @@ const READY_TEMPERATURE: u8 = 0x40;
 /// Noise by the code of the samples, Pa rms, without the filter.
 const NOISE_PA: [f64; 6] = [3.7, 2.7, 2.0, 1.6, 1.2, 0.9];
 
-/// What a real BMP390 holds from register 0x31 on (tests of the crate `bmp390`).
+/// Content of a real BMP390 from register 0x31 on (from the tests of the crate `bmp390`).
 const A_PART: [u8; 21] = [
     0x98, 0x6C, 0xA9, 0x4A, 0xF9, 0xE3, 0x1C, 0x61, 0x16, 0x06, 0x01, 0x51, 0x4A, 0xDE, 0x5D, 0x03, 0xFA,
     0xF9, 0x0E, 0x06, 0xF5,
@@ -31,11 +32,11 @@ const A_PART: [u8; 21] = [
 pub(super) struct Bmp3 {
     analog: Analog,
     identity: u8,
-    /// What its factory burned in.
+    /// The factory calibration.
     calibration: [u8; 21],
     registers: [u8; 0x80],
     register: usize,
-    /// Of bytes that are written: whether the next one is a register.
+    /// Whether the next byte that is written is a register.
     is_register: bool,
     conversion: Option<Conversion<()>>,
 }
@@ -162,7 +163,7 @@ impl EmulatedChip for Bmp3 {
         self.registers[TEMPERATURE..TEMPERATURE + 3]
             .copy_from_slice(&(temperature as u32).to_le_bytes()[..3]);
         self.registers[STATUS] |= READY_PRESSURE | READY_TEMPERATURE;
-        self.registers[POWER] &= !0x30; // asleep again
+        self.registers[POWER] &= !0x30; // in sleep mode again
     }
 
     fn conversion_s(&self) -> f64 {

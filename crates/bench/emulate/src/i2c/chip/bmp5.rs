@@ -1,4 +1,5 @@
-//! The BMP581 and BMP585: Bosch's BMP5_SensorAPI. FIFO, filter and the modes other than forced are left out.
+//! The BMP581 and BMP585: Bosch's BMP5_SensorAPI. FIFO, filter and all modes except the forced mode
+//! are not emulated.
 
 use super::analog::{Analog, Conversion};
 use super::emulated_chip::{EmulatedChip, Make};
@@ -16,7 +17,7 @@ const COMMAND: usize = 0x7E;
 
 const DATA_READY: u8 = 0x01;
 const WOKE_UP: u8 = 0x10;
-/// How long it is deaf after a reset, ns.
+/// How long it does not respond after a reset, ns.
 const DEAF_NS: u64 = 2_000_000;
 
 /// A BMP5.
@@ -49,7 +50,7 @@ impl Bmp5 {
         chip
     }
 
-    /// Not published: at one sample it measures 240 times a second at most.
+    /// Not published. With one sample it measures at most 240 times a second.
     fn usual_s(&self) -> f64 {
         let code = self.registers[OVERSAMPLING] >> 3 & 7;
         3.1e-3 + 1e-3 * f64::from(1_u8 << code)
@@ -119,7 +120,7 @@ impl EmulatedChip for Bmp5 {
             self.registers[PRESSURE..PRESSURE + 3].copy_from_slice(&pressure.to_le_bytes()[..3]);
         }
         self.registers[INTERRUPT_STATUS] |= self.registers[INTERRUPT_SOURCE] & DATA_READY;
-        self.registers[MODE] &= !3; // standby again
+        self.registers[MODE] &= !3; // in standby again
     }
 
     fn conversion_s(&self) -> f64 {

@@ -1,7 +1,8 @@
 //! The CPS135B.
 //!
-//! Its data sheet is not public: the registers are those that CFSensor's XGZP6847D and XGZP6897D (data sheet V2.5) and NOVOSENSE's NSA2300
-//! share. What none of them says is guessed, and stands in [`BarometerSettings`] where it can be.
+//! Its data sheet is not public. The registers are those that CFSensor's XGZP6847D and XGZP6897D
+//! (data sheet V2.5) and NOVOSENSE's NSA2300 have in common. What none of these documents states is
+//! a guess, and is a setting in [`BarometerSettings`] where possible.
 
 use super::analog::{Analog, Conversion};
 use super::emulated_chip::{EmulatedChip, Make};
@@ -17,7 +18,7 @@ const CONFIGURATIONS_END: u8 = 0xA7;
 
 /// Bit of [`STATUS`]: a sample has not been read yet.
 const READY: u8 = 0x01;
-/// Bit of [`COMMAND`]: convert; clears itself at the end.
+/// Bit of [`COMMAND`]: convert. It clears itself at the end of the conversion.
 const CONVERT: u8 = 0x08;
 /// Codes in the lowest three bits of [`COMMAND`].
 const TEMPERATURE: u8 = 0b000;
@@ -33,14 +34,14 @@ const SLEEP_NS: u64 = 62_500_000;
 pub(super) struct Cps135b {
     analog: Analog,
     settings: BarometerSettings,
-    /// Whether its one-time memory was burned: it answers no more.
+    /// Whether its one-time memory was burned. It then does not answer any more.
     is_burned: bool,
     register: u8,
     command: u8,
     status: u8,
     configurations: [u8; 3],
     data: [u8; 5],
-    /// By its code.
+    /// The conversion under way, with the code of its command.
     conversion: Option<Conversion<u8>>,
 }
 
@@ -60,7 +61,7 @@ impl Cps135b {
         }
     }
 
-    /// Carries a command out. One that comes during a conversion begins it anew.
+    /// Carries out a command. A command during a conversion begins the conversion again.
     fn begin(&mut self, command: u8, now_ns: u64) {
         let code = command & 0b111;
         self.command = command;
@@ -76,7 +77,7 @@ impl Cps135b {
         self.conversion = Some(self.analog.begin(code, self.usual_s(), begun_ns));
     }
 
-    /// How long it takes a usual part for a conversion, s.
+    /// Conversion time of a usual part, s.
     fn usual_s(&self) -> f64 {
         let BarometerSettings {
             conversion_s,
@@ -92,13 +93,13 @@ impl Cps135b {
             [_, *p0, *p1, *p2] = self.settings.counts(felt.pressure_pa).to_be_bytes();
         }
         if code != PRESSURE {
-            let temperature = (256.0 * felt.temperature_c).round() as i16; // held at its ends
+            let temperature = (256.0 * felt.temperature_c).round() as i16; // clamped to the range of 16 bits
             [*t0, *t1] = temperature.to_be_bytes();
         }
         self.status |= READY;
     }
 
-    /// How many samples make a pressure.
+    /// Number of samples of a pressure.
     fn samples(&self) -> f64 {
         match self.configurations[1] & 0b111 {
             0b000 => 1024.0,
@@ -136,7 +137,7 @@ impl EmulatedChip for Cps135b {
             register @ CONFIGURATIONS..=CONFIGURATIONS_END => {
                 self.configurations[usize::from(register - CONFIGURATIONS)] = byte;
             }
-            _ => {} // cannot be written
+            _ => {} // read-only
         }
         self.register = self.register.wrapping_add(1);
     }

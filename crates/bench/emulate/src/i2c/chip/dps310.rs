@@ -1,4 +1,5 @@
-//! The DPS310: Infineon's driver DPS310-Pressure-Sensor. FIFO, interrupts and the background modes are left out.
+//! The DPS310: Infineon's driver DPS310-Pressure-Sensor. FIFO, interrupts and the background modes
+//! are not emulated.
 
 use super::analog::{Analog, Conversion, counts_of};
 use super::emulated_chip::{EmulatedChip, Make};
@@ -16,7 +17,7 @@ const COEFFICIENTS: usize = 0x10;
 const THERMOMETER: usize = 0x28;
 const FUSES: usize = 0x32;
 
-/// What a measurement of so many samples is larger than one by, times 2^19.
+/// Scale factors of results by the code of the number of samples.
 const SCALES: [f64; 8] = [
     524_288.0,
     1_572_864.0,
@@ -27,16 +28,16 @@ const SCALES: [f64; 8] = [
     1_040_384.0,
     2_088_960.0,
 ];
-/// What a part that somebody published holds from register 0x10 on, in a report on Infineon's driver.
+/// Content of a real part from register 0x10 on, published in a report on Infineon's driver.
 const A_PART: [u8; 18] = [
     0x0D, 0xEE, 0xD7, 0x13, 0x7D, 0x8F, 0x24, 0x0C, 0xF7, 0x09, 0x05, 0xA4, 0xDA, 0x1B, 0x00, 0x6F, 0xFA,
     0xF7,
 ];
-/// The same in numbers: c0, c1, c00, c10, c01, c11, c20, c21, c30.
+/// The same coefficients as numbers: c0, c1, c00, c10, c01, c11, c20, c21, c30.
 const ITS_COEFFICIENTS: [f64; 9] = [
     222.0, -297.0, 79_832.0, -56_308.0, -2295.0, 1444.0, -9701.0, 111.0, -1289.0,
 ];
-/// From power to coefficients, ns.
+/// Time from power-up until the coefficients can be read, ns.
 const WAKING_NS: u64 = 40_000_000;
 
 /// A DPS310.
@@ -147,7 +148,7 @@ impl EmulatedChip for Dps310 {
             .measure(&conversion, 2.5 / 2_f64.powf(0.5 * code as f64), now);
         let [c0, c1, ..] = ITS_COEFFICIENTS;
         let limit = 1 << 23;
-        // The other thermometer says otherwise.
+        // The thermometer that was not used for calibration reads another temperature.
         let is_its_own =
             self.registers[TEMPERATURE_CONFIGURATION] & 0x80 == self.registers[THERMOMETER] & 0x80;
         let shown_c = felt.temperature_c - if is_its_own { 0.0 } else { 2.57 };
@@ -165,7 +166,7 @@ impl EmulatedChip for Dps310 {
             let pressure_of = |counts: f64| Self::pressure_pa(counts / scale, scaled_temperature);
             let mut counts = counts_of(felt.pressure_pa, -limit, limit - 1, pressure_of);
             if code > 3 && self.registers[CONFIGURATION] & 0x04 == 0 {
-                counts = counts << 40 >> 40; // the sum does not fit
+                counts = counts << 40 >> 40; // without the shift bit the sum overflows 24 bits
             }
             self.registers[PRESSURE..TEMPERATURE].copy_from_slice(&(counts as i32).to_be_bytes()[1..]);
             self.registers[MEASURE] |= 0x10;

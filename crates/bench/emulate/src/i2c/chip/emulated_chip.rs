@@ -1,4 +1,4 @@
-//! What a chip is on the wires.
+//! The behaviour of a chip on the bus.
 
 use std::fmt;
 
@@ -6,18 +6,18 @@ use super::analog::Analog;
 use super::felt::Now;
 use crate::i2c::barometer_settings::BarometerSettings;
 
-/// One chip on the wires, byte by byte.
+/// One chip on the bus, byte by byte.
 pub(in crate::i2c) trait EmulatedChip: fmt::Debug + Send {
-    /// It has power, from now on: what was in its registers is gone.
+    /// Power comes on now: the content of its registers is lost.
     fn wake_up(&mut self);
 
-    /// The first byte that is written to it: a register, or a command.
+    /// The first byte that is written after its address: a register or a command.
     fn point(&mut self, byte: u8, now_ns: u64);
 
-    /// A byte after that.
+    /// A further byte that is written.
     fn write(&mut self, byte: u8, now_ns: u64);
 
-    /// A byte that it is asked for.
+    /// A byte that is read.
     fn read(&mut self) -> u8;
 
     /// STOP.
@@ -28,17 +28,17 @@ pub(in crate::i2c) trait EmulatedChip: fmt::Debug + Send {
         true
     }
 
-    /// Ends the conversions that have ended by now.
+    /// Ends the conversions whose time is over.
     fn settle(&mut self, now: &Now<'_>);
 
-    /// How long it takes for a conversion as it is set, s.
+    /// Time of a conversion with the present settings, s.
     fn conversion_s(&self) -> f64;
 
-    /// What it was calibrated to is lost, if it is kept where it can be read.
+    /// Loses its calibration, if the calibration is kept where it can be read.
     fn lose_calibration(&mut self) {}
 }
 
-/// A part of a kind: what differs from one to the other, and what is set of all.
+/// What a new part is made from: what differs between parts, and the settings of all parts.
 pub(in crate::i2c) struct Make<'a> {
     pub(in crate::i2c) analog: Analog,
     pub(in crate::i2c) settings: &'a BarometerSettings,
@@ -47,9 +47,9 @@ pub(in crate::i2c) struct Make<'a> {
 /// A kind of chip.
 pub(in crate::i2c) struct Kind {
     pub(in crate::i2c) name: &'static str,
-    /// 7-bit; the first is usual.
+    /// 7-bit addresses. The first one is usual.
     pub(in crate::i2c) addresses: &'static [u8],
     pub(in crate::i2c) make: fn(Make<'_>) -> Box<dyn EmulatedChip>,
-    /// Whether its noise stands in [`BarometerSettings`].
+    /// Whether its noise is set in [`BarometerSettings`].
     pub(in crate::i2c) has_settings: bool,
 }

@@ -1,4 +1,5 @@
-//! The LPS22HB: ST's driver lps22hb-pid. FIFO, filter, interrupts and the modes with a rate of their own are left out.
+//! The LPS22HB: ST's driver lps22hb-pid. FIFO, filter, interrupts and the continuous modes are not
+//! emulated.
 
 use super::analog::{Analog, Conversion};
 use super::emulated_chip::{EmulatedChip, Make};
@@ -13,7 +14,7 @@ const TEMPERATURE: usize = 0x2B;
 
 const ONE_SHOT: u8 = 0x01;
 const COUNTS_UP: u8 = 0x10;
-/// Not published; it measures at most 75 times a second.
+/// Not published. It measures at most 75 times a second.
 const CONVERSION_S: f64 = 12.5e-3;
 
 /// An LPS22HB.

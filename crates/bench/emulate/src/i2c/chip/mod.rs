@@ -1,7 +1,8 @@
 //! The chips, register by register.
 //!
-//! Each is written from its data sheet and not from the driver, and computes in the other direction: from a pressure to what its converter
-//! counts. A new chip is a file and a line in [`CHIPS`].
+//! Each chip is written from its data sheet and not from the driver, and computes in the other
+//! direction: from a pressure to the counts of its converter. To add a chip, add a file and a line
+//! in [`CHIPS`].
 
 mod analog;
 mod bmp3;
@@ -18,7 +19,7 @@ pub(super) use analog::Analog;
 pub(super) use emulated_chip::{EmulatedChip, Kind, Make};
 pub(super) use felt::{Felt, Now};
 
-/// All kinds. One line for a chip.
+/// All kinds of chips, one line each.
 pub(super) const CHIPS: &[Kind] = &[
     Kind {
         has_settings: true,

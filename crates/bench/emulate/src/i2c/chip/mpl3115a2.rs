@@ -1,4 +1,5 @@
-//! The MPL3115A2: data sheet Rev 3.0, 12/2013. Its FIFO, its interrupts and its altimeter are left out.
+//! The MPL3115A2: data sheet Rev 3.0, 12/2013. Its FIFO, its interrupts and its altimeter are not
+//! emulated.
 
 use super::analog::{Analog, Conversion};
 use super::emulated_chip::{EmulatedChip, Make};
@@ -22,9 +23,9 @@ pub(super) struct Mpl3115a2 {
     analog: Analog,
     registers: [u8; 0x2E],
     register: usize,
-    /// Until when it is busy with itself, ns: after a reset.
+    /// End of the time in which it does not respond after a reset, ns.
     resting_until_ns: u64,
-    /// Whether it has measured since it woke up: the first one is off.
+    /// Whether it has measured since power-up. Its first measurement is wrong.
     has_measured: bool,
     conversion: Option<Conversion<u8>>,
     now_ns: u64,
@@ -92,7 +93,7 @@ impl EmulatedChip for Mpl3115a2 {
         byte
     }
 
-    /// Without a repeated START a read is of the status, whatever register was named.
+    /// Without a repeated START a read returns the status, whatever register was written.
     fn stop(&mut self) {
         self.register = STATUS;
     }

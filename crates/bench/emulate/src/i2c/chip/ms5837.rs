@@ -6,7 +6,7 @@ use super::felt::Now;
 
 const RESET: u8 = 0x1E;
 const READ: u8 = 0x00;
-/// Of conversions: which one; the lower bits are twice the code of the samples.
+/// Codes of conversions. The lower bits are twice the code of the samples.
 const PRESSURE: u8 = 0x40;
 const TEMPERATURE: u8 = 0x50;
 
@@ -20,11 +20,11 @@ const NOISE_02BA_PA: [f64; 6] = [11.0, 6.2, 3.9, 2.8, 2.1, 1.6];
 pub(super) struct Ms5837 {
     analog: Analog,
     is_30_bar: bool,
-    /// What its factory burned in.
+    /// The factory calibration.
     prom: [u16; 7],
-    /// Whether the PROM was loaded, by a reset.
+    /// Whether a reset has loaded the PROM.
     is_loaded: bool,
-    /// What it sends when asked.
+    /// The bytes that are still to be read.
     answer: Vec<u8>,
     result: u32,
     conversion: Option<Conversion<u8>>,
@@ -32,7 +32,7 @@ pub(super) struct Ms5837 {
 
 impl Ms5837 {
     pub(super) fn new(mut make: Make<'_>, is_30_bar: bool) -> Self {
-        // Those of the data sheets' examples, as parts differ.
+        // The coefficients of the data sheets' examples, with a spread between parts.
         let (product, words) = match is_30_bar {
             true => (
                 0x0340,
@@ -59,7 +59,7 @@ impl Ms5837 {
         }
     }
 
-    /// Temperature, °C, and with it pressure, Pa, of what the converter counts.
+    /// Temperature, °C, from the converter's counts.
     fn temperature_c(&self, counts: f64) -> f64 {
         self.second_order(counts).0
     }
@@ -74,7 +74,7 @@ impl Ms5837 {
         }
     }
 
-    /// Temperature, °C; offset and sensitivity.
+    /// Temperature, °C, offset and sensitivity.
     fn second_order(&self, counts: f64) -> (f64, f64, f64) {
         let [_, c1, c2, c3, c4, c5, c6] = self.prom.map(f64::from);
         let two = |power: i32| 2_f64.powi(power);
@@ -132,14 +132,15 @@ impl EmulatedChip for Ms5837 {
                     .extend((if self.is_loaded { word } else { 0 }).to_be_bytes());
             }
             PRESSURE..=0x4A | TEMPERATURE..=0x5A if byte.is_multiple_of(2) => {
-                // One that comes during another spoils it.
+                // A conversion command during another conversion spoils the result.
                 let code = usize::from(byte & 0x0F) / 2;
                 self.result = 0;
                 let begun = self.analog.begin(byte, TIMES_S[code], now_ns);
                 self.conversion = (!spoiled && self.is_loaded).then_some(begun);
             }
             READ => {
-                // Read too early it is nothing, and what it converts is lost; read twice as well.
+                // A read that comes too early returns zero and loses the result. A second read
+                // returns zero.
                 self.conversion = None;
                 let [_, bytes @ ..] = std::mem::take(&mut self.result).to_be_bytes();
                 self.answer.extend(bytes);
@@ -185,7 +186,7 @@ impl EmulatedChip for Ms5837 {
     }
 }
 
-/// The check of the PROM: a remainder of four bits, over 16 bytes.
+/// The checksum of the PROM: a remainder of four bits, over 16 bytes.
 fn check(prom: [u16; 7]) -> u16 {
     let words = prom
         .iter()

@@ -1,4 +1,4 @@
-//! The tangent on the coarse mesh: that of displacements which are linear on each coarse tetrahedron.
+//! The tangent on the coarse mesh, for displacements that are linear on each coarse tetrahedron.
 
 use glam::{Mat3, Vec3};
 use pulp::NullaryFnOnce;
@@ -8,16 +8,18 @@ use super::sink::{NodeBlock, NodeSlopes, Sink};
 use crate::parallel::dispatch;
 use crate::wide::{LANES, Wide};
 
-/// Derivatives of the energy of a coarse tetrahedron whose midpoints stay midway between its corners.
+/// Derivatives of the energy of a coarse tetrahedron whose midpoints stay midway between its
+/// corners.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct CoarseTangent {
-    /// For corners `a >= b`, at `a (a + 1) / 2 + b`. N/mm
+    /// For corners `a >= b`, at `a (a + 1) / 2 + b`; N/mm.
     pub(crate) stiffness: [Mat3; 10],
-    /// Change of each corner's volume (second index) with each corner's displacement (first), mm².
+    /// Derivative of each corner's volume (second index) by each corner's displacement (first
+    /// index), mm².
     pub(crate) slopes: [[Vec3; 4]; 4],
 }
 
-/// Keeps the coarse tangents of the slots from `first` on.
+/// Stores the coarse tangents of the slots from `first` on.
 pub(crate) struct CoarseSink<'a> {
     pub(crate) first: usize,
     pub(crate) tangents: &'a mut [CoarseTangent],
@@ -62,7 +64,8 @@ fn coarsen(table: &Table, blocks: &[NodeBlock], slopes: &[NodeSlopes; NODES], ou
                 let quarter = Wide::splat(0.25);
                 for i in 0..3 {
                     for j in 0..3 {
-                        // The pair stands for both of its orders, one the other's transpose.
+                        // The pair represents both of its orders, one of which is the transpose of
+                        // the other.
                         if p >= q {
                             sum[i][j] += block[i][j] * quarter;
                         }

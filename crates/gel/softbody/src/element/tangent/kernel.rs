@@ -1,4 +1,4 @@
-//! The tangents of the elements, pack by pack.
+//! Computes the tangents of the elements, pack by pack.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ use crate::MPA_PER_KPA;
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::{LANES, Wide};
 
-/// Most pairs of nodes that an element has.
+/// Largest number of pairs of nodes of an element.
 const MAX_PAIRS: usize = NODES * (NODES + 1) / 2;
 
 struct Kernel<'a> {
@@ -31,7 +31,8 @@ struct Kernel<'a> {
 }
 
 impl Elements {
-    /// Hands the tangents of each half to its sink, at given displacements and pressures of the slots' corners.
+    /// Passes the tangents of each half to its sink, at the given displacements and pressures of
+    /// the slots' corners.
     pub(crate) fn tangents(
         &self,
         response: &Response,
@@ -48,7 +49,7 @@ impl Elements {
         );
     }
 
-    /// Hands over the tangents of the elements between the halves.
+    /// Passes the tangents of the elements between the halves to the sink.
     pub(crate) fn tangents_between(
         &self,
         response: &Response,
@@ -79,7 +80,7 @@ impl Elements {
         });
     }
 
-    /// Most pairs that a table has.
+    /// Largest number of pairs of a table.
     pub(crate) fn most_pairs(&self) -> usize {
         let pairs = self.tables.iter().map(|table| table.pairs.len());
         pairs.max().unwrap_or_default()
@@ -165,7 +166,7 @@ impl NullaryFnOnce for Kernel<'_> {
 }
 
 impl Pack {
-    /// The ten nodes' displacements, in single precision.
+    /// The displacements of the ten nodes, in single precision.
     #[inline(always)]
     fn gather_single(&self, displacements_mm: &[DVec3]) -> [Vector<f32>; NODES] {
         let ten = self.gather(displacements_mm);

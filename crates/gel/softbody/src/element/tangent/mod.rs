@@ -1,4 +1,5 @@
-//! Second derivatives of the energy at fixed pressures, in single precision, which is accurate enough for a Newton direction.
+//! Second derivatives of the energy at fixed pressures, in single precision, which is accurate
+//! enough for a Newton direction.
 
 mod coarse;
 mod kernel;

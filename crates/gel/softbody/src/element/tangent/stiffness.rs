@@ -1,9 +1,22 @@
 //! The blocks of the pairs of nodes at one quadrature point.
 //!
-//! With `f_a = F G_a`, `c_a = J F⁻ᵀ G_a`, `h_a = 2 (I1 F - F C) G_a` and `o_a = 2 F O G_a` the slopes of the invariants, a pair of nodes has
-//! `w_11 4 f⊗f + w_22 h⊗h + w_12 2 (f⊗h + h⊗f) + w_1J 2 (f⊗c + c⊗f) + w_2J (h⊗c + c⊗h) + w_JJ c⊗c` from the curvature of the energy, the
-//! same for the constant stress `O` of the history variables, and from the curvature of the invariants `2 w_1 G_a·G_b 1`,
-//! `2 w_2 [2 f_a⊗f_b - f_b⊗f_a + (I1 G_a·G_b - f_a·f_b) 1 - G_a·G_b FFᵀ]` and `(w_J - p)/J (c_a⊗c_b - c_b⊗c_a)`.
+//! With the derivatives of the invariants `f_a = F G_a`, `c_a = J F⁻ᵀ G_a`,
+//! `h_a = 2 (I1 F - F C) G_a` and `o_a = 2 F O G_a`, the second derivatives of the energy give a
+//! pair of nodes the block
+//!
+//! ```text
+//! w_11 4 f⊗f + w_22 h⊗h + w_12 2 (f⊗h + h⊗f)
+//! + w_1J 2 (f⊗c + c⊗f) + w_2J (h⊗c + c⊗h) + w_JJ c⊗c
+//! ```
+//!
+//! and the same for the constant stress `O` of the history variables. The second derivatives of the
+//! invariants add
+//!
+//! ```text
+//! 2 w_1 G_a·G_b 1
+//! 2 w_2 [2 f_a⊗f_b - f_b⊗f_a + (I1 G_a·G_b - f_a·f_b) 1 - G_a·G_b FFᵀ]
+//! (w_J - p)/J (c_a⊗c_b - c_b⊗c_a)
+//! ```
 
 use twintac_material::LawProperties;
 
@@ -15,7 +28,8 @@ use super::super::table::NODES;
 use super::sink::NodeBlock;
 use crate::wide::Wide;
 
-/// What the blocks of a point are made of. Scratch memory, set point by point; vectors are set for the point's nodes only.
+/// The terms of which the blocks of a point are made. Scratch memory, set point by point; vectors
+/// are set for the nodes of the point only.
 pub(super) struct PointStiffness {
     /// `f_a`
     pushed: [Vector<f32>; NODES],
@@ -32,7 +46,7 @@ pub(super) struct PointStiffness {
     second: SecondTerms,
 }
 
-/// What a constant stress `O` adds; set only where there is one.
+/// The terms of a constant stress `O`; set only if there is one.
 struct OffsetTerms {
     is_set: bool,
     /// `o_a`/2
@@ -42,7 +56,7 @@ struct OffsetTerms {
     spatial_pushed: Wide<f32>,
 }
 
-/// What the second invariant adds; set only for a law that uses it.
+/// The terms of the second invariant; set only for a law that uses it.
 struct SecondTerms {
     /// `h_a`
     slopes: [Vector<f32>; NODES],
@@ -139,7 +153,7 @@ impl PointStiffness {
         self.skew = along_volume * inverse;
     }
 
-    /// Adds to the block of the point's nodes `a >= b`.
+    /// Adds to the block of the nodes `a >= b` of the point.
     #[inline(always)]
     pub(super) fn add(
         &self,
@@ -155,7 +169,7 @@ impl PointStiffness {
             offset,
             ..
         } = self;
-        // What stands right of c_a, and of f_a.
+        // The factors to the right of c_a and of f_a.
         let mut right_of_spatial = [Wide::zero(); 3];
         let mut right_of_pushed = [Wide::zero(); 3];
         for j in 0..3 {
@@ -244,7 +258,7 @@ impl SecondTerms {
         self.first_invariant = first;
     }
 
-    /// Adds all but the multiple of the unit matrix.
+    /// Adds everything except for the multiple of the identity.
     #[inline(always)]
     fn add(
         &self,
@@ -272,7 +286,7 @@ impl SecondTerms {
     }
 }
 
-/// Keeps single precision meaningful in tetrahedra that are about to turn inside out.
+/// Keeps single precision meaningful in tetrahedra that are close to inversion.
 #[inline(always)]
 fn away_from_zero(volume_ratio: Wide<f32>) -> Wide<f32> {
     volume_ratio.map(|ratio| ratio.abs().max(1e-3).copysign(ratio))

@@ -1,18 +1,18 @@
-//! Which topic and field a column of a bag is, or what the bag has instead.
+//! Finds the topic and field of a bag's column, or lists what the bag has instead.
 
 use super::{Bag, BagTopic};
 use crate::RecordingError;
 
-/// The field that stands for the times of a topic's headers, s.
+/// The field for the header times of a topic, s.
 pub(super) const STAMP: &str = "stamp";
 
-/// The field that stands for the times at which a topic was recorded, s.
+/// The field for the times at which a topic was recorded, s.
 pub(super) const LOG_TIME: &str = "log_time";
 
-/// Fewest names in a row that are shortened to the first and the last.
+/// Smallest number of names in a row that are shortened to the first and the last.
 const SHORTENED: usize = 3;
 
-/// Whether a column's name is one of a bag: `/topic:field`.
+/// Whether a column's name has the form of a bag's, `/topic:field`.
 pub(in crate::import) fn is_bag_column(column: &str) -> bool {
     column.starts_with('/') && column.contains(':')
 }
@@ -30,7 +30,7 @@ pub(super) fn find<'bag, 'name>(
     };
     let Some((name, field)) = column.split_once(':') else {
         return Err(wrong(format!(
-            "is none of a bag, whose columns are `/topic:field`; the bag has {}",
+            "is not a column of a bag, which is `/topic:field`; the bag has {}",
             listed(bag)
         )));
     };
@@ -44,19 +44,19 @@ pub(super) fn find<'bag, 'name>(
         return Ok((topic, field));
     }
     Err(wrong(match named().next() {
-        None => format!("is of no topic that is there; the bag has {}", listed(bag)),
+        None => format!("is of an unknown topic; the bag has {}", listed(bag)),
         Some(topic) => missing(topic, field),
     }))
 }
 
-/// Why a topic does not have a field, read after the column's name.
+/// Why a topic does not have a field; it follows the column's name.
 fn missing(topic: &BagTopic, field: &str) -> String {
     let BagTopic { kind, messages, .. } = topic;
     match &topic.fields {
         Err(why) => format!("is of a topic that cannot be read: {why}"),
         Ok(_) if *messages == 0 => "is of a topic without messages".to_owned(),
         Ok(_) if field == STAMP => {
-            format!("is not there, as messages of type {kind} have no header; take `{LOG_TIME}`")
+            format!("is missing, as messages of type {kind} have no header; use `{LOG_TIME}`")
         }
         Ok(fields) => format!(
             "is in none of the {messages} messages of type {kind}, or means several fields; they have {}",
@@ -65,7 +65,7 @@ fn missing(topic: &BagTopic, field: &str) -> String {
     }
 }
 
-/// The topics of a bag, for people to read.
+/// The topics of a bag, as text.
 pub(in crate::import) fn listed(bag: &Bag) -> String {
     let described = |topic: &BagTopic| {
         let BagTopic {
@@ -94,7 +94,8 @@ pub(in crate::import) fn is_numbered_alike(one: &str, other: &str) -> bool {
     stem(one).len() < one.len() && stem(one) == stem(other)
 }
 
-/// Names, of which those in a row that differ in their last number alone are the first and the last.
+/// Names as text. For names in a row that differ only in their last number, only the first and the
+/// last are listed.
 fn shortened(fields: &[String]) -> String {
     let runs = fields.chunk_by(|one, other| is_numbered_alike(one, other));
     let shown = runs.flat_map(|run| match run {

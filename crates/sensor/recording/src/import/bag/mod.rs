@@ -1,4 +1,4 @@
-//! Bags: recordings of several topics, each with a clock of its own. What reads their files stands in another crate.
+//! Bags: recordings of several topics, each with its own clock. Another crate reads their files.
 
 mod find;
 mod resample;
@@ -12,37 +12,40 @@ pub(super) use table::{Rows, table};
 
 use crate::{Provenance, RecordingError};
 
-/// Reads a bag: its topics, and of these the columns that are asked for, `/topic:field` each. None if the file is no bag.
+/// Reads a bag: its topics, and of these the requested columns, each `/topic:field`. `None` if the
+/// file is not a bag.
 pub type ReadBag = fn(&Path, &[&str]) -> Option<Result<Bag, RecordingError>>;
 
-/// What was read of a bag.
+/// The content of a bag.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bag {
-    /// Its topics, in the order in which they came.
+    /// Its topics, in order of appearance.
     pub topics: Vec<BagTopic>,
-    /// Where its numbers come from, if it says so itself.
+    /// Provenance of the numbers, if the bag contains it.
     pub provenance: Option<Provenance>,
-    /// What a person should know of how it was read.
+    /// Notes for a person on how it was read.
     pub notes: Vec<String>,
 }
 
-/// A topic, and of its messages what was asked for.
+/// A topic with the requested numbers of its messages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BagTopic {
-    /// Such as `/tactile`.
+    /// Name, such as `/tactile`.
     pub name: String,
     /// Type of its messages, such as `sensor_msgs/msg/FluidPressure`.
     pub kind: String,
-    /// How many messages it has.
+    /// Number of messages.
     pub messages: u64,
-    /// Names of the numbers in its first message; or why its messages cannot be read.
+    /// Names of the numbers in its first message, or why its messages cannot be read.
     pub fields: Result<Vec<String>, String>,
-    /// Numbers of the messages that were read, from 1; `[n_rows]`, empty where nothing was asked for.
+    /// Numbers of the messages that were read, from 1; `[n_rows]`, empty if no column was
+    /// requested.
     pub numbers: Vec<u64>,
-    /// When they were recorded, ns since 1970-01-01 UTC; `[n_rows]`.
+    /// Times of recording, ns since 1970-01-01 UTC; `[n_rows]`.
     pub log_ns: Vec<i64>,
-    /// When they were measured, as their headers say, ns; `[n_rows]`, empty where messages have no such stamp.
+    /// Times of measurement in the headers, ns; `[n_rows]`, empty if messages have no such stamp.
     pub stamp_ns: Vec<i64>,
-    /// What was asked for, by the field as it was written there, NaN where a message has none; `[n_rows]` each. Fields that no message has are not there.
+    /// The requested columns by field name, NaN if a message has no such field; `[n_rows]` each.
+    /// Fields that no message has are left out.
     pub columns: BTreeMap<String, Vec<f64>>,
 }

@@ -1,21 +1,21 @@
-//! The messages of one topic at the times of another.
+//! Interpolates the messages of one topic at the times of another.
 
-/// Farthest that two messages may be apart for what is between them to be known, ns; of slow topics two periods.
+/// Largest distance between two messages for interpolation, ns. For slow topics it is two periods.
 const WITHIN_NS: i64 = 20_000_000;
 
-/// Where the rows of another topic lie between the messages of a topic.
+/// Positions of the rows between the messages of another topic.
 pub(super) struct Between {
-    /// For each row the message before, the one after, and the part of the way from one to the other; none where they are too far apart or one is
-    /// not there.
+    /// For each row: the message before, the message after, and the fraction of the way between
+    /// them. `None` if they are too far apart or one does not exist.
     places: Vec<Option<(usize, usize, f64)>>,
-    /// For each row the last message so far.
+    /// For each row: the last message before it.
     latest: Vec<Option<usize>>,
-    /// Farthest that two messages may be apart, ns.
+    /// Largest distance between two messages, ns.
     pub(super) within_ns: i64,
 }
 
 impl Between {
-    /// Both in ns, and not falling.
+    /// Times of messages and of rows, ns; neither may decrease.
     pub(super) fn new(messages_ns: &[i64], rows_ns: &[i64]) -> Self {
         let within_ns = WITHIN_NS.max(usual_step_ns(messages_ns).saturating_mul(2));
         let latest = |row_ns: &i64| {
@@ -44,17 +44,18 @@ impl Between {
         self.places[row].is_some()
     }
 
-    /// How many rows have none.
+    /// Number of rows without messages on both sides.
     pub(super) fn n_unknown(&self) -> usize {
         self.places.iter().filter(|place| place.is_none()).count()
     }
 
-    /// Numbers on the straight line between two messages; NaN of a row without.
+    /// Linear interpolation at each row; NaN for a row without messages on both sides.
     pub(super) fn line(&self, numbers: &[f64]) -> Vec<f64> {
         self.each(|before, after, part| before + part * (after - before), numbers)
     }
 
-    /// As [`line`](Self::line); but between a number within the bounds and one outside, the one outside stands.
+    /// As [`line`](Self::line), but if one of the two numbers is out of bounds, that number is
+    /// taken.
     pub(super) fn line_within(&self, numbers: &[f64], [lowest, highest]: [f64; 2]) -> Vec<f64> {
         let is_outside = |number: f64| !(lowest..=highest).contains(&number);
         let between = |before: f64, after: f64, part: f64| match [before, after].map(is_outside) {
@@ -65,7 +66,7 @@ impl Between {
         self.each(between, numbers)
     }
 
-    /// The number of the last message so far, however long ago it was; NaN before the first.
+    /// The number of the last message before each row, however old; NaN before the first message.
     pub(super) fn latest(&self, numbers: &[f64]) -> Vec<f64> {
         let number = |message: &Option<usize>| message.map_or(f64::NAN, |message| numbers[message]);
         self.latest.iter().map(number).collect()
@@ -81,7 +82,7 @@ impl Between {
     }
 }
 
-/// The median of the steps, ns.
+/// The median step, ns.
 fn usual_step_ns(times_ns: &[i64]) -> i64 {
     let mut steps: Vec<i64> = times_ns
         .windows(2)
@@ -102,7 +103,7 @@ mod tests {
         Between::new(&ns(messages_ms), &ns(rows_ms))
     }
 
-    /// As text, which shows NaN.
+    /// As text, because NaN is not equal to itself.
     fn text(numbers: &[f64]) -> String {
         format!("{numbers:?}")
     }

@@ -1,4 +1,5 @@
-//! A bag as one table: the messages of one topic are its rows, and other topics are put onto their times.
+//! A bag as one table: the messages of one topic are the rows, and other topics are interpolated at
+//! their times.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,19 +14,19 @@ use crate::import::unit::Time;
 
 /// Which messages of a bag become rows, and how.
 pub(in crate::import) struct Rows<'a> {
-    /// The column of the time, if one is named: its topic's messages are the rows.
+    /// The time column, if one is named: the messages of its topic are the rows.
     pub(in crate::import) time: Option<&'a str>,
-    /// Else a column of the topic whose messages are the rows.
+    /// Otherwise: a column of the topic whose messages are the rows.
     pub(in crate::import) first: &'a str,
-    /// A quaternion, which may change its sign as it turns.
+    /// A quaternion, whose sign may change as it turns.
     pub(in crate::import) rotation: Option<&'a Rotation>,
-    /// Readings outside cannot be used.
+    /// The usable range of readings.
     pub(in crate::import) usable: [f64; 2],
     pub(in crate::import) drops_incomplete: bool,
 }
 
 impl<'a> Rows<'a> {
-    /// As a description has them, with the time of the main file or of a joined one.
+    /// The rows for a description, with the time column of the main file or of a joined one.
     pub(in crate::import) fn of(
         description: &'a Description,
         time: Option<&'a TimeColumn>,
@@ -46,22 +47,23 @@ impl<'a> Rows<'a> {
 /// The messages that are the rows, and their times.
 struct Clock<'a> {
     topic: &'a BagTopic,
-    /// Whether times of all topics are those of the recorder.
+    /// Whether the times of all topics are those of the recorder.
     is_of_log: bool,
     field: &'static str,
     rows_ns: &'a [i64],
 }
 
-/// Where the rows lie between the messages of another topic.
+/// The rows' positions between the messages of another topic.
 struct Beside {
     between: Between,
-    /// Whether rows without it are left out.
+    /// Whether rows without this topic are left out.
     is_needed: bool,
-    /// Whether rows without it lack a reading.
+    /// Whether a reading is missing in rows without this topic.
     is_read: bool,
 }
 
-/// The columns that are wanted, at the times of the rows. Where no time is named, [`Table::clock`] says what is to be taken.
+/// The wanted columns at the times of the rows. If no time column is named, [`Table::clock`] is the
+/// time column to take.
 pub(in crate::import) fn table(
     file: &str,
     mut bag: Bag,
@@ -143,10 +145,10 @@ impl<'a> Clock<'a> {
         }
     }
 
-    /// What helps where topics do not have the same clock.
+    /// What helps if topics have different clocks.
     fn remedy(&self) -> String {
         format!(
-            "`time = {{ column = \"{}:{LOG_TIME}\" }}` takes the times at which messages were recorded",
+            "`time = {{ column = \"{}:{LOG_TIME}\" }}` uses the times at which messages were recorded",
             self.topic.name
         )
     }
@@ -178,7 +180,7 @@ impl Beside {
     /// A column of the topic at the times of the rows.
     fn at_rows(&mut self, numbers: &[f64], kind: Kind, usable: [f64; 2]) -> Vec<f64> {
         match kind {
-            // It holds until the next one.
+            // A label is valid until the next one.
             Kind::Label => self.between.latest(numbers),
             Kind::Reading => {
                 self.is_read = true;
@@ -191,7 +193,7 @@ impl Beside {
         }
     }
 
-    /// What to say of rows that have nothing of the topic.
+    /// A note or an error about rows without data of this topic.
     fn check(&self, name: &str, clock: &Clock, file: &str) -> Result<Option<String>, RecordingError> {
         let n_unknown = self.between.n_unknown();
         if n_unknown == 0 || !(self.is_needed || self.is_read) {
@@ -219,9 +221,10 @@ impl Beside {
     }
 }
 
-/// When the messages of a topic were measured, as far as they say it, and the field that says it.
+/// The times at which messages of a topic were measured, or else recorded, and the field that has
+/// them.
 fn times_ns(topic: &BagTopic, is_of_log: bool) -> (&'static str, &[i64]) {
-    // Drivers that do not fill their headers leave zeros there.
+    // Drivers that do not fill in their headers leave zeros there.
     let is_stamped = topic.stamp_ns.iter().any(|&stamp_ns| stamp_ns != 0);
     if is_stamped && !is_of_log {
         (STAMP, &topic.stamp_ns)
@@ -247,7 +250,8 @@ fn in_seconds(time_ns: i64) -> f64 {
     time_ns as f64 * 1e-9
 }
 
-/// Turns the signs of quaternions so that each is near the one before: both signs are the same rotation, and what is between the two is not.
+/// Sets the signs of quaternions so that neighbours are close. Both signs are the same rotation,
+/// but interpolation needs equal ones.
 fn smooth(bag: &mut Bag, rotation: &Rotation) {
     let fields = rotation.columns.each_ref().map(|column| column.split_once(':'));
     let [Some((name, x)), Some((_, y)), Some((_, z)), Some((_, w))] = fields else {
@@ -272,7 +276,7 @@ fn smooth(bag: &mut Bag, rotation: &Rotation) {
     }
 }
 
-/// Topics that nothing was read of.
+/// Topics that no column was read from.
 fn unread(bag: &Bag, wanted: &BTreeSet<(&str, Kind)>) -> Vec<String> {
     let topics = wanted.iter().filter_map(|(column, _)| column.split_once(':'));
     let read: BTreeSet<&str> = topics.map(|(topic, _)| topic).collect();

@@ -1,4 +1,4 @@
-//! What the topics of a bag may mean, told from their types and fields.
+//! Guesses the meaning of a bag's topics from their types and fields.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::RecordingError;
 use crate::import::bag::{Bag, BagTopic, ReadBag, Rows, is_numbered_alike, listed, table};
 use crate::import::cell::Kind;
 
-/// Topics that may mean something: the columns of each.
+/// The columns of topics whose meaning was guessed.
 struct Meant {
     taxels: Vec<String>,
     temperatures: Vec<String>,
@@ -19,7 +19,7 @@ struct Meant {
     time: String,
 }
 
-/// The columns that may mean something, and their numbers at the times of the taxels.
+/// These columns, with their numbers at the times of the taxels.
 pub(super) struct Guessed {
     columns: Vec<Column>,
     meant: Meant,
@@ -113,7 +113,7 @@ impl Meant {
     }
 }
 
-/// The longest array of numbers of a topic; else all topics of barometers.
+/// The longest array of numbers of a topic; if there is none, all topics of barometers.
 fn taxels(bag: &Bag) -> Option<Vec<String>> {
     let arrays = bag.topics.iter().flat_map(|topic| {
         let fields = topic.fields.as_deref().unwrap_or_default();
@@ -138,7 +138,7 @@ fn of_kind(bag: &Bag, kind: &str, field: &str) -> Vec<String> {
     topics.map(|topic| column(topic, field)).collect()
 }
 
-/// Columns of the first topic that has all fields; a field may be the end of a longer name.
+/// Columns of the first topic that has all fields. A field may be the end of a longer name.
 fn columns(bag: &Bag, fields: &[String]) -> Option<Vec<String>> {
     bag.topics.iter().find_map(|topic| {
         let has = |field: &String| {
@@ -157,7 +157,7 @@ fn column(topic: &BagTopic, field: &str) -> String {
     format!("{}:{field}", topic.name)
 }
 
-/// The unit of a field of ROS's own messages, which are in SI units.
+/// The unit of a field of ROS's own messages, which use SI units.
 fn unit(column: &str) -> Option<&'static str> {
     let field = column.split_once(':')?.1;
     match field {

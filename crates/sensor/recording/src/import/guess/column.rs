@@ -1,11 +1,11 @@
-//! A column: its name, the unit that the name ends with, and its numbers.
+//! A column: its name, the unit at the end of the name, and its numbers.
 
 use crate::import::bag::is_bag_column;
 
 /// A column, and its numbers.
 pub(super) struct Column {
     pub(super) name: String,
-    /// The name in lower case without its unit, and the unit that it ends with.
+    /// The name in lower case without its unit, and the unit at its end.
     pub(super) base: String,
     pub(super) unit: Option<String>,
     pub(super) numbers: Vec<f64>,
@@ -33,7 +33,7 @@ impl Column {
         }
     }
 
-    /// The name without its unit. In a bag the number in an array, or the topic.
+    /// The name without its unit. In a bag: the index in an array, or the topic.
     pub(super) fn bare_name(&self) -> String {
         if is_bag_column(&self.name)
             && let Some((topic, field)) = self.name.split_once(':')
@@ -50,7 +50,7 @@ impl Column {
             .to_owned()
     }
 
-    /// The name less the digits at its end, if there are any.
+    /// The name without the digits at its end. `None` if there are none.
     pub(super) fn stem(&self) -> Option<&str> {
         let stem = self
             .base
@@ -85,7 +85,7 @@ fn is_unit(word: &str) -> bool {
     units.contains(&word)
 }
 
-/// A text as TOML has it.
+/// A text as a TOML string.
 pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }

@@ -1,4 +1,4 @@
-//! The description as text, a line for each field, and behind it what it was guessed from.
+//! The description as text: one line for each field, with a comment on what it was guessed from.
 
 use std::fmt::Write as _;
 
@@ -7,11 +7,11 @@ use super::layout::Layout;
 use super::roles::Roles;
 use super::unit::{self, Length};
 
-/// Lines of the description.
+/// The lines of the description.
 struct Lines(String);
 
 impl Lines {
-    /// A field, and why it is so.
+    /// Adds a field and the reason for its value.
     fn add(&mut self, field: &str, why: &str) {
         let comment = if why.is_empty() {
             String::new()
@@ -27,14 +27,14 @@ impl Lines {
     }
 }
 
-/// The description of a file: of a text with its layout and all its columns, or of a bag.
+/// The description of a file: a text with its layout and all its columns, or a bag.
 pub(super) fn write(file: &str, layout: Option<&Layout>, columns: &[Column], roles: &Roles) -> String {
     let seen = match layout {
         Some(_) => "its first lines",
         None => "the types of its topics",
     };
     let mut lines = Lines(format!(
-        "# How to read {file}: guessed from {seen}. Check each line; what is marked with TODO is not in the file.\n\n"
+        "# How to read {file}: guessed from {seen}. Check each line; values marked with TODO are not in the file.\n\n"
     ));
     lines.add(
         "sensor = \"my-sensor\"",
@@ -58,7 +58,7 @@ pub(super) fn write(file: &str, layout: Option<&Layout>, columns: &[Column], rol
     lines.0
 }
 
-/// How the file is written, where that is not usual.
+/// Adds the layout of the file where it differs from the defaults.
 fn add_layout(lines: &mut Lines, layout: &Layout, columns: &[Column]) {
     let shown = |byte: u8| quoted(&char::from(byte).to_string());
     if layout.delimiter != b',' {
@@ -111,7 +111,7 @@ fn add_motion(lines: &mut Lines, roles: &Roles) {
         let names = turn.map(|column| quoted(&column.name)).join(", ");
         lines.add(
             &format!("rotation = {{ columns = [{names}] }}"),
-            "`upright`: what they say where the indenter is upright",
+            "`upright`: their values where the indenter is upright",
         );
     }
     let Some(z) = roles.place[2] else {
@@ -124,7 +124,7 @@ fn add_motion(lines: &mut Lines, roles: &Roles) {
         );
         lines.add(
             "weight_n = 1.0",
-            "TODO: stands here because there is no z: leave it out, or give the weight that lay on the gel",
+            "TODO: given because there is no z: leave it out, or give the weight that lay on the gel",
         );
         return;
     };
@@ -210,7 +210,7 @@ fn add_presses(lines: &mut Lines, roles: &Roles) {
     if roles.place[2].is_some() && roles.time.is_some() {
         lines.add(
             "zero = { above_contact_mm = 0.2, window_s = 1.0 }",
-            "readings count from before each press",
+            "readings are relative to those before each press",
         );
     }
 }

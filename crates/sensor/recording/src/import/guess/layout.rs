@@ -1,28 +1,28 @@
-//! How the lines of a file are cut into cells, told from what most of them look like.
+//! Guesses how the lines of a file are split into cells, from the form of most lines.
 
 use super::column::Column;
 use crate::import::cell::{Cells, Kind, Labels, cells};
 
-/// Lines that are looked at.
+/// Number of lines that are examined.
 const LINES: usize = 5000;
 
-/// Fewest numbers of a row, as part of its cells.
+/// Smallest fraction of numbers among the cells of a row.
 const NUMERIC: f64 = 0.6;
 
-/// How the lines of a file are cut into cells, and which of them names the columns.
+/// How the lines of a file are split into cells, and which line names the columns.
 pub(super) struct Layout {
     pub(super) delimiter: u8,
     pub(super) has_decimal_comma: bool,
     pub(super) comment: Option<u8>,
     /// Lines before the header.
     pub(super) skip_lines: usize,
-    /// None where the first row is one of numbers.
+    /// `None` if the first row already has numbers.
     pub(super) header: Option<Vec<String>>,
     n_cells: usize,
 }
 
 impl Layout {
-    /// The layout with which most cells are those of rows of numbers; none if there are no such rows.
+    /// The layout with the most cells in rows of numbers. `None` if there are no such rows.
     pub(super) fn find(text: &[u8]) -> Option<Self> {
         let lines: Vec<&[u8]> = text.split(|&byte| byte == b'\n').take(LINES).collect();
         let comment = [b'#', b'%'].into_iter().find(|mark| {
@@ -48,7 +48,7 @@ impl Layout {
                     .filter(|line| is_row(line))
                     .map(|line| split(line, delimiter))
                     .collect();
-                // The shape of the middle row is that of most.
+                // The middle row has the shape of most rows.
                 let n_cells = rows.get(rows.len() / 2)?.len();
                 let numeric = |row: &&Vec<String>| row.len() == n_cells && is_numeric(row, has_decimal_comma);
                 let n_numeric = rows.iter().filter(numeric).count();
@@ -59,7 +59,7 @@ impl Layout {
                     n_cells,
                 ))
             });
-        // Of equals the first one: a comma is a separator rather than in numbers.
+        // Of equal layouts the first: a comma is more likely a separator than a decimal comma.
         let best = layouts.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
         let (_, delimiter, has_decimal_comma, n_cells) = best;
         let first_row = lines.iter().position(|line| {
@@ -70,7 +70,7 @@ impl Layout {
             .rev()
             .find(|&line| split(lines[line], delimiter).len() == n_cells);
         let header = header_line.map(|line| split(lines[line], delimiter));
-        // A header behind a mark of comments can't be read as one.
+        // A header behind a comment mark cannot be read as a header.
         let is_marked = header_line.is_some_and(|line| lines[line].first() == comment.as_ref());
         let named = header.map(|mut names| {
             if is_marked && let Some(first) = names.first_mut() {
@@ -83,7 +83,7 @@ impl Layout {
             has_decimal_comma,
             comment,
             skip_lines: match header_line {
-                // Empty lines, and those of comments, are left out anyway.
+                // Empty lines and comment lines are skipped anyway.
                 Some(line) if !is_marked => lines[..line].iter().rposition(is_row).map_or(0, |last| last + 1),
                 _ => 0,
             },
@@ -92,7 +92,7 @@ impl Layout {
         })
     }
 
-    /// The columns, and the numbers of the first rows.
+    /// The columns, with the numbers of the first rows.
     pub(super) fn columns(&self, text: &[u8]) -> Vec<Column> {
         let (reading, mut labels) = (
             Cells::new(if self.has_decimal_comma { ',' } else { '.' }, &[]),

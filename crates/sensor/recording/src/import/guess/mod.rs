@@ -1,4 +1,5 @@
-//! A first import description of a file that nobody has described: a guess for each field, and what it was guessed from.
+//! A first import description for a file without one: a guess for each field, and what it was
+//! guessed from.
 
 mod bag;
 mod column;
@@ -17,10 +18,11 @@ use super::bag::ReadBag;
 use super::text::Text;
 use crate::RecordingError;
 
-/// The text of an import description for a text of columns. It can be read as it is; what is not in the file is marked with TODO.
+/// The text of an import description for a text file with columns. It can be used as it is. Fields
+/// that cannot be found in the file are marked with TODO.
 ///
 /// # Errors
-/// The file cannot be read, or nothing in it looks like rows of numbers.
+/// The file cannot be read, or has no rows of numbers.
 pub fn guess_import(path: &Path) -> Result<String, RecordingError> {
     let text = Text::read(path, 0)?;
     let layout = Layout::find(text.rest()).ok_or_else(|| RecordingError::Line {
@@ -35,10 +37,10 @@ pub fn guess_import(path: &Path) -> Result<String, RecordingError> {
     Ok(fields::write(&file_name(path), Some(&layout), &columns, &roles))
 }
 
-/// As [`guess_import`], for a bag that `read_bag` reads; none if the file is no bag.
+/// Like [`guess_import`], for a bag that `read_bag` reads. `None` if the file is not a bag.
 ///
 /// # Errors
-/// The bag cannot be read, or none of its topics looks like readings of taxels.
+/// The bag cannot be read, or no topic looks like readings of taxels.
 pub fn guess_bag_import(path: &Path, read_bag: ReadBag) -> Option<Result<String, RecordingError>> {
     let bag = read_bag(path, &[])?;
     let guess = bag

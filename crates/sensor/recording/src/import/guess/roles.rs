@@ -1,8 +1,8 @@
-//! What columns may mean, told from their names and numbers.
+//! Guesses the meaning of columns from their names and numbers.
 
 use super::column::Column;
 
-/// Names of a column of times.
+/// Names of a time column.
 const TIME: [&str; 13] = [
     "t",
     "time",
@@ -19,25 +19,25 @@ const TIME: [&str; 13] = [
     "date",
 ];
 
-/// What stands before the name of an axis.
+/// Prefixes of the name of an axis.
 const AXIS: [&str; 7] = ["", "pos_", "position_", "tcp_", "ee_", "tip_", "p"];
 
-/// Names of a height that is no axis.
+/// Names of a height column that is not an axis.
 const HEIGHT: [&str; 3] = ["depth", "indentation", "height"];
 
 /// Names of the force into the gel.
 const FORCE: [&str; 7] = ["fz", "f_z", "force", "force_z", "f", "load", "normal_force"];
 
-/// Names of what tells presses apart.
+/// Names of a column that distinguishes presses.
 const PRESS: [&str; 7] = ["press", "label", "trial", "press_id", "trial_id", "id", "shape"];
 
-/// Part of the largest rise of the readings at which the tip counts as touching.
+/// Fraction of the largest change of the readings at which the tip counts as touching.
 const TOUCHING: f64 = 0.03;
 
-/// What columns may mean.
+/// The guessed meaning of the columns.
 pub(super) struct Roles<'a> {
     pub(super) time: Option<&'a Column>,
-    /// x, y and z.
+    /// The columns of x, y and z.
     pub(super) place: [Option<&'a Column>; 3],
     pub(super) turn: Option<[&'a Column; 4]>,
     pub(super) force: Option<&'a Column>,
@@ -47,7 +47,7 @@ pub(super) struct Roles<'a> {
     pub(super) temperatures: Vec<&'a Column>,
 }
 
-/// Whether a column's name is that of a thermometer.
+/// Whether a column's name is that of a temperature.
 fn is_temperature(column: &Column) -> bool {
     let words = ["temp", "temperature", "t"];
     let is_named = |word: &&str| column.base == **word || column.base.ends_with(&format!("_{word}"));
@@ -80,7 +80,8 @@ impl<'a> Roles<'a> {
         let left = columns.iter().filter(is_left);
         let (temperatures, left): (Vec<&Column>, Vec<&Column>) =
             left.partition(|column| is_temperature(column));
-        // The most columns that differ in a number alone; else all that change.
+        // The largest group of columns that differ only in a number; if there is none, all columns
+        // that change.
         let of_stem = |stem: &str| {
             left.iter()
                 .copied()
@@ -104,7 +105,7 @@ impl<'a> Roles<'a> {
         }
     }
 
-    /// Where on the scale of z the readings begin to rise, and whether that scale grows downwards.
+    /// The z at which the readings begin to rise, and whether z increases downwards.
     pub(super) fn contact(&self, z: &Column) -> (f64, bool) {
         let rise = |row: usize| -> f64 {
             let change = |taxel: &&Column| Some((taxel.numbers.get(row)? - taxel.numbers.first()?).abs());

@@ -1,8 +1,8 @@
-//! Units of columns, told from their names or from how large their numbers are.
+//! Guesses units of columns from their names or from the size of their numbers.
 
 use super::column::{Column, quoted};
 
-/// Readings of an untouched sensor in each unit: the pressure of the air.
+/// Readings of an untouched sensor in each unit: the atmospheric pressure.
 const AIR: [(&str, [f64; 2]); 5] = [
     ("Pa", [80_000.0, 115_000.0]),
     ("hPa", [800.0, 1150.0]),
@@ -11,13 +11,13 @@ const AIR: [(&str, [f64; 2]); 5] = [
     ("bar", [0.8, 1.15]),
 ];
 
-/// Units of time, and how many of them a second has.
+/// Units of time, and how many of each are in a second.
 const TIMES: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)];
 
-/// Time between two rows of a sensor of this kind, at least and at most, s.
+/// Smallest and largest time between two rows of such a sensor, s.
 const STEP_S: [f64; 2] = [5e-4, 1.0];
 
-/// Part of a counter's range above which it has been when it fell because it rolled over.
+/// A counter that falls after it exceeded this fraction of its range has rolled over.
 const FULL: f64 = 0.95;
 
 /// A unit of length, and what it was guessed from.
@@ -28,7 +28,7 @@ pub(super) struct Length {
 }
 
 impl Length {
-    /// Of a place, by its name or by how far it ranges.
+    /// The unit of a position, from the column's name or from its range.
     pub(super) fn of(column: &Column) -> Self {
         let [low, high] = column.range();
         let (name, why) = match (column.unit.as_deref(), high - low) {
@@ -76,7 +76,7 @@ pub(super) fn pressure(taxels: &[&Column]) -> (&'static str, String) {
     }
 }
 
-/// The field of the time, and the rate that it makes.
+/// The time field, and the resulting frame rate.
 pub(super) fn time(column: &Column) -> (String, String) {
     let name = quoted(&column.name);
     if column.is_clock {

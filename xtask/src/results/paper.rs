@@ -1,82 +1,21 @@
-//! What `twintac reproduce --paper` found, kept as data, and the tables in docs/results.md that are written from it and from the list of all figures.
+//! The table of the paper's experiments, from the kept `metrics.json` of
+//! `twintac reproduce --paper`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::Path;
 
-use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::documents::replace_part;
-use crate::figures::{self, Figure};
-use crate::git::git;
-
-const KEPT: &str = "docs/results/metrics.json";
-const PAGE: &str = "docs/results.md";
-const COMMAND: &str = "twintac reproduce --paper";
-
 /// Figures, and what made them.
 #[derive(Serialize, Deserialize)]
-struct Kept {
-    command: String,
-    commit: String,
-    metrics: Value,
+pub(super) struct Kept {
+    pub(super) command: String,
+    pub(super) commit: String,
+    pub(super) metrics: Value,
 }
 
-/// Keeps a `metrics.json` of this commit, where one is given; writes the tables, and fails where figures are of older code and nothing says so.
-pub fn write(root: &Path, metrics: Option<&str>) -> Result<()> {
-    if let Some(path) = metrics {
-        let text = fs::read_to_string(path).with_context(|| format!("reading {path}"))?;
-        let metrics: Value = serde_json::from_str(&text).with_context(|| format!("reading {path}"))?;
-        ensure!(
-            metrics["effort"] == "full",
-            "{path} was made with --quick: its figures show nothing"
-        );
-        ensure!(
-            git(root, &["status", "--porcelain"])?.is_empty(),
-            "something is not committed: nobody could make these figures again"
-        );
-        let kept = Kept {
-            command: COMMAND.to_owned(),
-            commit: git(root, &["rev-parse", "--short", "HEAD"])?,
-            metrics,
-        };
-        let file = root.join(KEPT);
-        fs::create_dir_all(file.parent().unwrap_or(root))?;
-        fs::write(&file, serde_json::to_string_pretty(&kept)? + "\n")?;
-        figures::are_made_anew(root, KEPT, &kept.commit)?;
-    }
-    let (kept, figures, text) = read(root)?;
-    fs::write(root.join(PAGE), fresh(text, &kept, &figures)?)?;
-    figures::check(root, &figures)
-}
-
-/// The tables are as [`write`] would leave them.
-pub fn is_fresh(root: &Path) -> Result<()> {
-    let (kept, figures, text) = read(root)?;
-    ensure!(
-        fresh(text.clone(), &kept, &figures)? == text,
-        "{PAGE} is not what {KEPT} and {} say: run `cargo xtask results`",
-        figures::LIST
-    );
-    Ok(())
-}
-
-fn read(root: &Path) -> Result<(Kept, Vec<Figure>, String)> {
-    let kept = fs::read_to_string(root.join(KEPT)).with_context(|| format!("reading {KEPT}"))?;
-    let kept = serde_json::from_str(&kept).with_context(|| format!("reading {KEPT}"))?;
-    let text = fs::read_to_string(root.join(PAGE)).with_context(|| format!("reading {PAGE}"))?;
-    Ok((kept, figures::read(root)?, text))
-}
-
-fn fresh(mut text: String, kept: &Kept, figures: &[Figure]) -> Result<String> {
-    replace_part(&mut text, "results: paper", &table(kept)).context(PAGE)?;
-    replace_part(&mut text, "results: figures", &figures::table(figures)).context(PAGE)?;
-    Ok(text)
-}
-
-fn table(kept: &Kept) -> String {
+/// What the paper has beside what was found here, and accuracies of classified shapes.
+pub(super) fn table(kept: &Kept) -> String {
     let metrics = &kept.metrics;
     let number = |value: &Value, decimals: usize, unit: &str| {
         let number = value.as_f64();
@@ -89,22 +28,22 @@ fn table(kept: &Kept) -> String {
     let sensor = &metrics["sensor"];
     let mut rows = vec![
         (
-            "error of this twin, on presses that it never saw",
+            "error of the twin on test presses",
             "5.95 %",
             nearest(&twin["twin"]),
         ),
         (
-            "the same of the paper's network",
+            "error of the paper's network",
             "",
             nearest(&twin["variants"]["paper"]),
         ),
         (
-            "the same of a fitted curve",
+            "error of the parametric baseline",
             "",
             nearest(&twin["baselines"]["kernel"]),
         ),
         (
-            "what the fit of the gel leaves of the forces",
+            "residual of the fitted material, in force",
             "",
             number(&metrics["material"]["residual_percent"], 1, "%"),
         ),
@@ -120,7 +59,7 @@ fn table(kept: &Kept) -> String {
             number(&sensor["largest_force_n"], 1, "N"),
         ),
         (
-            "smallest weight found",
+            "smallest weight detected",
             "0.007 N",
             number(&sensor["smallest_step_n"], 4, "N"),
         ),
@@ -132,7 +71,7 @@ fn table(kept: &Kept) -> String {
         .sum::<f64>()
         / maps.len().max(1) as f64;
     rows.push((
-        "five shapes, twin beside sensor: mean difference of the taxels",
+        "mean difference of twin and sensor, five shapes",
         "",
         format!("{mean:.1} %"),
     ));
@@ -141,7 +80,7 @@ fn table(kept: &Kept) -> String {
         .map(|(name, paper, own)| format!("| {name} | {paper} | {own} |\n"));
     let results = metrics["shapes"].as_array();
     format!(
-        "\n`{}`, commit {}, seed {}: the bench is `emulated`, the twin `simulated`, the paper's figures `real`, of another sensor.\n\n\
+        "\n`{}`, commit {}, seed {}.\nThe bench is `emulated`, the twin `simulated`; the paper's figures are `real`, of another sensor.\n\n\
          | what | paper | here |\n|---|---|---|\n{}\n{}\n",
         kept.command,
         kept.commit,
@@ -151,7 +90,8 @@ fn table(kept: &Kept) -> String {
     )
 }
 
-/// A way to train, but for the bench's trials: whose simulated trials, how many of each shape, and how presses are sampled.
+/// A way to train, but for the bench's trials: whose simulated trials, how many of each shape, and
+/// how presses are sampled.
 type Way<'a> = (&'a str, u64, &'a str);
 
 /// Accuracies: a row for each number of the bench's trials, a column for each way.
@@ -237,14 +177,5 @@ mod tests {
             lines[2..],
             ["| 0 |  | 92.0 ± 2.0 |", "| 20 | 82.0 ± 2.0 | 95.0 ± 0.0 |"]
         );
-    }
-
-    #[test]
-    fn what_was_made_quickly_is_not_kept() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("metrics.json");
-        fs::write(&path, r#"{"effort": "quick"}"#).unwrap();
-        let error = write(&crate::root(), path.to_str()).unwrap_err().to_string();
-        assert!(error.contains("--quick"), "{error}");
     }
 }

@@ -85,8 +85,9 @@ impl Graph {
             .with_context(|| format!("there is no package `{name}` in the workspace"))
     }
 
-    /// How `start` reaches each package that it is built with, the shortest way: the packages in between, `start` first, the reached one last.
-    /// What packages of others depend on does not count, nor do ways through a package for which `ends` holds.
+    /// How `start` reaches each package that it is built with, the shortest way: the packages in
+    /// between, `start` first, the reached one last. What packages of others depend on does not
+    /// count, nor do ways through a package for which `ends` holds.
     pub fn ways_from(
         &self,
         start: &str,
