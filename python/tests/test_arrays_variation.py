@@ -184,16 +184,12 @@ def test_installed_elsewhere_a_sensor_reads_what_is_there() -> None:
         assert np.allclose(np.asarray(back)[sensor, 0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], atol=1e-5)
 
 
-def with_a_perceptron(model: Path, folder: Path) -> Path:
-    """The same model with a perceptron of random weights, which corrects its readings."""
-    random = np.random.default_rng(2)
+def without_its_perceptron(model: Path, folder: Path) -> Path:
+    """The same model, of the variant without a perceptron."""
     record = json.loads((model / "twin.json").read_text(encoding="utf-8"))
-    record["variant"], record["start"]["hidden"] = "pressure+memory+mlp", [5, 4]
+    record["variant"], record["start"]["hidden"] = "pressure+memory", []
     data = (model / "weights.safetensors").read_bytes()
     tensors = {name: array for name, array in read_tensors(data).items() if "layer" not in name}
-    for number, shape in enumerate(((N_TAXELS, 5), (5, 4), (4, N_TAXELS))):
-        tensors[f"layer{number}.weight"] = random.normal(size=shape).astype("<f4")
-        tensors[f"layer{number}.bias"] = random.normal(size=shape[1:]).astype("<f4")
     header: dict[str, Any] = {}
     body = b""
     for name, array in tensors.items():
@@ -201,14 +197,14 @@ def with_a_perceptron(model: Path, folder: Path) -> Path:
         header[name] = {"dtype": "F32", "shape": array.shape, "data_offsets": ends}
         body += array.tobytes()
     start = json.dumps(header).encode()
+    changed = {
+        "twin.json": json.dumps(record).encode(),
+        "weights.safetensors": len(start).to_bytes(8, "little") + start + body,
+    }
     checksums = json.loads((model / "checksums.json").read_text(encoding="utf-8"))
     folder.mkdir()
     for name in checksums["sha256"]:
-        contents = (model / name).read_bytes()
-        if name == "weights.safetensors":
-            contents = len(start).to_bytes(8, "little") + start + body
-        elif name == "twin.json":
-            contents = json.dumps(record).encode()
+        contents = changed.get(name, (model / name).read_bytes())
         (folder / name).write_bytes(contents)
         checksums["sha256"][name] = hashlib.sha256(contents).hexdigest()
     (folder / "checksums.json").write_text(json.dumps(checksums), encoding="utf-8")
@@ -220,8 +216,8 @@ def test_a_twin_reads_what_rust_reads(
     has_perceptron: bool, trained: Path, tmp_path: Path, lib: Library
 ) -> None:
     folder = trained / "model"
-    if has_perceptron:
-        folder = with_a_perceptron(folder, tmp_path / "model")
+    if not has_perceptron:
+        folder = without_its_perceptron(folder, tmp_path / "model")
     twin = arrays.twin(folder, like=lib.like)
     assert bool(twin.layers) == has_perceptron
     position_mm = presses_mm()
