@@ -220,8 +220,8 @@ pub(crate) struct SensorBatch {
 
 /// Sensors without or with forces on freely moving bodies.
 enum Batch {
-    Free(twintac::SensorBatch),
-    Coupled(twintac::CoupledBatch),
+    Free(Box<twintac::SensorBatch>),
+    Coupled(Box<twintac::CoupledBatch>),
 }
 
 /// The state of one sensor of a `SensorBatch` at a moment: its deviations, the state of its noise,
@@ -301,10 +301,13 @@ impl SensorBatch {
         let batch = batch.or_raise(py)?;
         let is_coupled = coupling.is_some();
         let batch = match coupling {
-            Some(own) => Batch::Coupled(batch.with_coupling(own.coupling).map_err(|mismatch| {
-                unusable(py, "coupling", &format!("does not go with `gel`: {mismatch}"))
-            })?),
-            None => Batch::Free(batch),
+            Some(own) => {
+                let coupled = batch.with_coupling(own.coupling).map_err(|mismatch| {
+                    unusable(py, "coupling", &format!("does not go with `gel`: {mismatch}"))
+                })?;
+                Batch::Coupled(Box::new(coupled))
+            }
+            None => Batch::Free(Box::new(batch)),
         };
         Ok(Self {
             batch: Shared::new(batch),

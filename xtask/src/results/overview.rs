@@ -159,7 +159,7 @@ fn grouped(number: &str) -> String {
     }
     let n = whole.len();
     let digits = whole.chars().enumerate().map(|(at, digit)| {
-        let is_first = at == 0 || (n - at) % 3 != 0 || whole[..at] == *"-";
+        let is_first = at == 0 || (n - at) % 3 != 0 || &whole[..at] == "-";
         if is_first {
             digit.to_string()
         } else {
@@ -216,13 +216,13 @@ fn found<'a>(value: &'a Value, path: &str) -> Result<Vec<&'a Value>> {
 
 /// Whether a value has all of the fields, written `KEY=VALUE & KEY=VALUE`.
 fn has(value: &Value, fields: &str) -> bool {
+    let shown = |value: &Value| match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
     fields.split(" & ").all(|field| {
-        field
-            .split_once('=')
-            .is_some_and(|(key, wanted)| match &value[key] {
-                Value::String(text) => text == wanted,
-                other => other.to_string() == wanted,
-            })
+        let field = field.split_once('=');
+        field.is_some_and(|(key, wanted)| shown(&value[key]) == wanted)
     })
 }
 
