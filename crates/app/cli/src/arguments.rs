@@ -432,8 +432,9 @@ pub(crate) struct Evaluate {
 
 /// Gains, static nonlinearity, relaxation, contact heights and stiffness are fitted together, with
 /// regularization towards the values of the original twin: what a few presses do not determine
-/// stays as it was. Presses are chosen by their poses: spread over files, then over taxels; equal
-/// ones are drawn at random. The other presses are for testing.
+/// stays as it was. Presses are chosen by their poses, not their readings: those that leave the
+/// least uncertainty in the predictions of all presses (I-optimal design), where a fifth of the
+/// presses is left aside at random at each choice. The other presses are for testing.
 #[derive(Args, Debug)]
 pub(crate) struct Adapt {
     /// Folder of the model to start from: a run's `model`.
