@@ -41,6 +41,13 @@ fn every_part_appears_with_its_data_and_only_then() {
 }
 
 #[test]
+fn the_caption_explains_the_bars_that_are_there() {
+    for page in [render(&invented::moving()), render(&invented::resting())] {
+        assert_eq!(page.contains("Green:"), page.contains("repeated press"));
+    }
+}
+
+#[test]
 fn no_text_leaves_its_picture() {
     for results in [invented::moving(), invented::resting()] {
         let mut n_figures = 0;

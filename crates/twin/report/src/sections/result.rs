@@ -12,9 +12,15 @@ use crate::{PAPER_ERROR_PERCENT, TwinReport};
 const MOST_READINGS: usize = 20_000;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
-    let caption = "Shorter is better. Grey: simpler predictors. Green: the sensor's own repeatability. \
-                   Blue: the figure that the paper reports for another sensor and protocol (real).";
-    let mut bars = figure(comparison(report), report.provenance, caption);
+    let repeated = match report.repeatability {
+        Some(_) => " Green: the sensor's own repeatability.",
+        None => "",
+    };
+    let caption = format!(
+        "Shorter is better. Grey: simpler predictors.{repeated} Blue: the figure that the paper reports for \
+         another sensor and protocol (real)."
+    );
+    let mut bars = figure(comparison(report), report.provenance, &caption);
     bars.table = Some(table(report));
     let caption = "Every held-out reading. On the dashed line the twin equals the sensor; the shade shows \
                    the number of readings, on a logarithmic scale.";
