@@ -214,8 +214,32 @@ def test_reset_leaves_nothing() -> None:
     kept = scene.touch.readings_kpa
     scene.touch.reset()
     assert kept.max() > 1.0 and not scene.touch.readings_kpa.any() and not scene.touch.wrench.any()
+    assert not scene.touch.read_ground_truth().any() and not scene.touch.slip_mm_per_s.any()
     with pytest.raises(ValueError, match="`world` is 1, there are 1"):
         scene.touch.reset(1)
+
+
+def test_slip_and_readings_without_variation_belong_to_the_state() -> None:
+    scene = Scene(palm(), friction=0.2, imperfection=Imperfection(gain_deviation=0.2))
+    scene.step(300)
+    assert not scene.touch.slip_mm_per_s.any()
+    truth_kpa = scene.touch.read_ground_truth()
+    assert not np.allclose(truth_kpa, scene.touch.readings_kpa, rtol=0.01)
+    perfect = Scene(palm(), friction=0.2)
+    perfect.step(300)
+    assert np.array_equal(truth_kpa, perfect.touch.readings_kpa)
+    scene.data.qvel[0] = 0.1
+    scene.step(10)
+    state, slip, truth_kpa = scene.touch.state(), scene.touch.slip_mm_per_s, scene.touch.read_ground_truth()
+    # It slips as fast as its lower face moves; it also tips over its edge.
+    lower_mm_per_s = 1e3 * (scene.data.qvel[0] - 0.01 * scene.data.qvel[4])
+    assert slip[0, 0, 0] == pytest.approx(lower_mm_per_s, rel=0.15) and abs(slip[0, 0, 1]) < 5.0
+    assert slip[0, 0, 0] > 30.0
+    scene.step(5)
+    assert not np.array_equal(scene.touch.slip_mm_per_s, slip)
+    scene.touch.set_state(state)
+    assert np.array_equal(scene.touch.slip_mm_per_s, slip)
+    assert np.array_equal(scene.touch.read_ground_truth(), truth_kpa)
 
 
 def test_bodies_fall_asleep_and_wake() -> None:

@@ -19,7 +19,7 @@ from ._contact import REACH_MM, share_of_bodies
 from ._convert import convert
 from ._file import read_file
 from ._gel import Gel
-from ._namespace import Array, namespace, refuse, root
+from ._namespace import Array, for_rows, namespace, refuse, root
 from ._read import Reading, placed, reading_of, wrench_of
 from ._shapes import Shapes
 
@@ -225,7 +225,7 @@ def step(
         xp.sum(wrench, axis=-2),
         near.gap_mm,
         wrench,
-        slip_mm / for_bodies(since_previous_s),
+        slip_mm / for_rows(since_previous_s),
     )
     return now, reading
 
@@ -392,19 +392,12 @@ def _lose(
     """Adds the damping, `t dF/dt`. If the sum would pull at a body, the wrench is 0: a gel does not
     adhere.
     """
-    lead = friction.retardation_s / for_bodies(since_previous_s)
+    lead = friction.retardation_s / for_rows(since_previous_s)
     loss = xp.where(before.is_known[..., None], lead * (wrench - before.elastic), 0.0)
     lossy = wrench + loss
     known = xp.ones_like(before.torque_n_mm + wrench[..., 2]) > 0.0
     now = now._replace(is_known=known, elastic=wrench, loss=loss)
     return now, xp.where(lossy[..., 2:3] > 0.0, 0.0, lossy)
-
-
-def for_bodies(since_s: Array | float) -> Array | float:
-    """Times of sensors, `[...]`, or one for all, for arrays `[..., n_bodies, n]`."""
-    if isinstance(since_s, float) or not len(getattr(since_s, "shape", ())):
-        return since_s
-    return since_s[..., None, None]
 
 
 def _shear_modulus_kpa(material: dict[str, Any]) -> float:

@@ -79,6 +79,13 @@ def times(xp: Any, rows: Array, matrix: Array) -> Array:
     return xp.reshape(product, (*leading, matrix.shape[-1]))
 
 
+def for_rows(since_s: Array | float) -> Array | float:
+    """Times of sensors, `[...]`, or one for all, for arrays `[..., n, m]` of sensors."""
+    if isinstance(since_s, float) or not len(getattr(since_s, "shape", ())):
+        return since_s
+    return since_s[..., None, None]
+
+
 def _name(xp: Any) -> str:
     name: str = xp.__name__
     return name.removeprefix("array_api_compat.").removesuffix(".numpy")

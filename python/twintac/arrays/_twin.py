@@ -16,9 +16,8 @@ import numpy as np
 from .. import Error
 from ._convert import convert
 from ._file import read_tensors
-from ._friction import for_bodies
 from ._gel import Layer
-from ._namespace import Array, namespace, refuse
+from ._namespace import Array, for_rows, namespace, refuse
 
 # Added to the sum of squares of a sensor's readings, in units of the largest reading.
 _ROUNDING = 1e-8
@@ -119,7 +118,7 @@ def read_twin(
         raise refuse("pressure_kpa", f"has the shape {list(pressure_kpa.shape)}", expected)
     now_kpa = _static(xp, twin, xp.astype(pressure_kpa, twin.gain.dtype, copy=False))
     changed_kpa = xp.where(before.is_rested[..., None], 0.0, now_kpa - before.relaxed_kpa)
-    since_s = for_bodies(since_previous_s)
+    since_s = for_rows(since_previous_s)
     kept, arrived = _faded(xp, since_s / twin.time_constant_s)
     overstress_kpa = kept * before.overstress_kpa + arrived * changed_kpa[..., None, :]
     readings_kpa = now_kpa + xp.sum(twin.share * overstress_kpa, axis=-2)

@@ -25,13 +25,24 @@ _REACH_MM = 2.0
 _BUILT_IN = {"phystac": (Sensor.phystac, FastGel.phystac), "phystac-tip": (Sensor.phystac_tip, FastGel.phystac_tip)}
 
 
+class _Shown(NamedTuple):
+    """What the sensors show since the last update, `[n_worlds, n_sensors, …]`."""
+
+    readings_kpa: npt.NDArray[np.float32]
+    ground_truth_kpa: npt.NDArray[np.float32]
+    wrench: npt.NDArray[np.float32]
+    slip_mm_per_s: npt.NDArray[np.float32]
+
+    def copy(self) -> "_Shown":
+        return _Shown(*(own.copy() for own in self))
+
+
 @dataclass(frozen=True)
 class TouchState:
     """The state of `TouchSensors` at a time: the result of `TouchSensors.state`."""
 
     _sensors: tuple[SensorState, ...]
-    _readings_kpa: npt.NDArray[np.float32]
-    _wrench: npt.NDArray[np.float32]
+    _shown: _Shown
     _time_s: _Array
     _written: _Array
 
@@ -137,9 +148,8 @@ class TouchSensors:
         # The parts of one rigid body do not touch each other.
         weld = model.body_weldid
         self._can_touch = weld[self._body][:, None] != weld[self._geoms.body][None, :]
-        self._readings_kpa = np.zeros((n_worlds, len(self._site), len(gel.ports_mm)), np.float32)
-        self._wrench = np.zeros((n_worlds, len(self._site), 6), np.float32)
-        self._slip_mm_per_s = np.zeros((n_worlds, len(self._site), 2), np.float32)
+        n_taxels = len(gel.ports_mm)
+        self._shown = _Shown(*(np.zeros((n_worlds, len(self._site), n), np.float32) for n in (n_taxels, n_taxels, 6, 2)))
 
     def __repr__(self) -> str:
         worlds = "one world" if self._worlds.n_worlds == 1 else f"{self._worlds.n_worlds} worlds"
@@ -155,27 +165,28 @@ class TouchSensors:
         """The last readings, kPa, `[n_worlds, n_sensors, n_taxels]`; 0 after a reset. A sensor has
         NaN if its pose, or that of a geom that can touch it, is not finite.
         """
-        return self._readings_kpa
+        return self._shown.readings_kpa
 
     @property
     def wrench(self) -> npt.NDArray[np.float32]:
         """Force on each gel, N, and torque about the top of the gel's middle, N mm, in the frame of
         the gel, `[n_worlds, n_sensors, 6]`; NaN where the readings are NaN.
         """
-        return self._wrench
+        return self._shown.wrench
 
     def read_ground_truth(self) -> npt.NDArray[np.float32]:
         """The last readings without sensor variation, kPa, `[n_worlds, n_sensors, n_taxels]`: those
-        of a perfect sensor, beside the imperfect ones.
+        of a perfect sensor, beside the imperfect ones. They are 0 and NaN where `readings_kpa` are
+        after a reset or for poses that are not finite.
         """
-        return self._batch.read_ground_truth().reshape(self._readings_kpa.shape)
+        return self._shown.ground_truth_kpa
 
     @property
     def slip_mm_per_s(self) -> npt.NDArray[np.float32]:
         """The slip velocity of what touches each sensor, mm/s, along x and y of the gel, `[n_worlds,
         n_sensors, 2]`: of several geoms the fastest one, and 0 if all stick.
         """
-        return self._slip_mm_per_s
+        return self._shown.slip_mm_per_s
 
     def update(self, data: Data) -> npt.NDArray[np.float32]:
         """Makes one time step: reads the poses of the geoms, and writes the forces of the gels on
@@ -200,7 +211,7 @@ class TouchSensors:
             raise ValueError(f"MuJoCo's force sensor `{self._unfelt_by}` does not feel what gels push with `update`: step within `with touch.pushing(data):`")
         touches = self._sense(data, is_updated=True)
         self._push.write(data, self._push.generalized(data, self._wrenches(data, touches, self._push.roots_m(data))))
-        return self._readings_kpa
+        return self._shown.readings_kpa
 
     @contextmanager
     def pushing(self, data: Data) -> Iterator[npt.NDArray[np.float32]]:
@@ -234,7 +245,7 @@ class TouchSensors:
         written = applied.copy()
         stays = np.zeros(applied.shape, bool)
         try:
-            yield self._readings_kpa
+            yield self._shown.readings_kpa
         finally:
             applied = self._worlds.rows(data, "xfrc_applied")
             stays = applied == written
@@ -269,8 +280,7 @@ class TouchSensors:
         numbers = self._numbers(world)
         return TouchState(
             _sensors=tuple(self._batch.state(sensor) for number in numbers for sensor in self._sensors_of(number)),
-            _readings_kpa=self._readings_kpa[numbers].copy(),
-            _wrench=self._wrench[numbers].copy(),
+            _shown=_Shown(*(own[numbers] for own in self._shown)),
             _time_s=self._clock.last_s[numbers].copy(),
             _written=self._push.written[numbers].copy(),
         )
@@ -286,14 +296,16 @@ class TouchSensors:
             ValueError: for the state of another number of worlds, or of other sensors.
         """
         numbers = self._numbers(world)
-        if state._readings_kpa.shape != self._readings_kpa[numbers].shape or state._written.shape != self._push.written[numbers].shape:
-            raise ValueError(f"`state` is of {state._readings_kpa.shape} readings (worlds, sensors, taxels), expected {self._readings_kpa[numbers].shape}, of the same model")
+        given, own = state._shown.readings_kpa.shape, self._shown.readings_kpa[numbers].shape
+        if given != own or state._written.shape != self._push.written[numbers].shape:
+            raise ValueError(f"`state` is of {given} readings (worlds, sensors, taxels), expected {own}, of the same model")
         sensors = iter(state._sensors)
-        self._readings_kpa, self._wrench = self._readings_kpa.copy(), self._wrench.copy()
+        self._shown = self._shown.copy()
         for place, number in enumerate(numbers):
             for sensor in self._sensors_of(number):
                 self._batch.set_state(sensor, next(sensors))
-            self._readings_kpa[number], self._wrench[number] = state._readings_kpa[place], state._wrench[place]
+            for shown, kept in zip(self._shown, state._shown, strict=True):
+                shown[number] = kept[place]
             self._clock.last_s[number] = state._time_s[place]
             self._push.restore(number, state._written[place])
 
@@ -317,17 +329,17 @@ class TouchSensors:
         ends = np.searchsorted(number, np.arange(worlds.n_worlds * len(self._site)), side="right")
         body = self._geoms.shape[touches.world, touches.geom]
         readings_kpa, wrench = self._batch.step(since_s, poses, body, ends, touch_id=touch_id)
-        self._readings_kpa = readings_kpa.reshape(self._readings_kpa.shape)
-        self._wrench = wrench.reshape(self._wrench.shape)
-        self._slip_mm_per_s = np.zeros_like(self._slip_mm_per_s)
+        slip_mm_per_s = np.zeros_like(self._shown.slip_mm_per_s)
         slips = self._batch.slip_of_touches()
         # Of several that are assigned to one sensor, the last one stays: the fastest.
         order = np.argsort(np.linalg.norm(slips, axis=-1), kind="stable")
-        self._slip_mm_per_s[touches.world[order], touches.sensor[order]] = slips[order]
+        slip_mm_per_s[touches.world[order], touches.sensor[order]] = slips[order]
+        found = (readings_kpa, self._batch.read_ground_truth(), wrench, slip_mm_per_s)
+        self._shown = _Shown(*(new.reshape(old.shape) for new, old in zip(found, self._shown, strict=True)))
         for world, sensor in zip(*np.nonzero(unknown)):
             self._batch.rest(int(world) * len(self._site) + int(sensor))
-            self._readings_kpa[world, sensor] = np.nan
-            self._wrench[world, sensor] = np.nan
+            for shown in self._shown:
+                shown[world, sensor] = np.nan
         self._clock.last_s = now_s
         return touches
 
@@ -382,10 +394,9 @@ class TouchSensors:
     def _rest(self, world: int) -> None:
         for sensor in self._sensors_of(world):
             self._batch.rest(sensor)
-        self._readings_kpa, self._wrench = self._readings_kpa.copy(), self._wrench.copy()
-        self._readings_kpa[world], self._wrench[world] = 0.0, 0.0
-        self._slip_mm_per_s = self._slip_mm_per_s.copy()
-        self._slip_mm_per_s[world] = 0.0
+        self._shown = self._shown.copy()
+        for shown in self._shown:
+            shown[world] = 0.0
 
     def _sensors_of(self, world: int) -> range:
         return range(world * len(self._site), (world + 1) * len(self._site))
