@@ -47,12 +47,14 @@ impl Pose {
 
     /// Transforms a point from the inner to the outer frame, mm.
     #[must_use]
+    #[inline]
     pub fn transform_point(&self, point_mm: DVec3) -> DVec3 {
         self.rotation * point_mm + self.position_mm
     }
 
     /// Transforms a point from the outer to the inner frame, mm.
     #[must_use]
+    #[inline]
     pub fn inverse_transform_point(&self, point_mm: DVec3) -> DVec3 {
         self.rotation.inverse() * (point_mm - self.position_mm)
     }

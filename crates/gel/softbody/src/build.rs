@@ -139,10 +139,10 @@ fn boundary(mesh: &TetMesh, stiffness_mpa: f64) -> Boundary {
     }
     let mut triangles = Vec::new();
     for nodes in mesh.boundary_triangles() {
-        let free: Vec<u32> = nodes.iter().filter_map(|&node| index_of[node as usize]).collect();
-        if !free.is_empty() {
+        let corners = nodes.map(|node| index_of[node as usize]);
+        if corners.iter().any(Option::is_some) {
             let at_mm = nodes.map(|node| mesh.nodes_mm[node as usize]);
-            triangles.push(BoundaryTriangle::new(nodes, at_mm, free, stiffness_mpa));
+            triangles.push(BoundaryTriangle::new(nodes, corners, at_mm, stiffness_mpa));
         }
     }
     Boundary::new(boundary_nodes, triangles)

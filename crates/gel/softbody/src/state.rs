@@ -15,6 +15,9 @@ use crate::{SoftBodyError, SolverSettings};
 /// Largest ratio of a motion to the previous one for which displacements are extrapolated.
 const MAX_EXTRAPOLATION: f64 = 2.0;
 
+/// Fraction of a travel beside the last motion above which it is in a new direction.
+const ASIDE: f64 = 0.3;
+
 /// The state of a soft body: everything that a press changes. Made by [`SoftBody::rest`].
 #[derive(Clone)]
 pub struct State {
@@ -51,6 +54,12 @@ impl Motion {
         let ends = new_mm.iter().zip(old_mm);
         self.displacements_mm.clear();
         self.displacements_mm.extend(ends.map(|(new, old)| *new - *old));
+    }
+
+    /// Whether the following travel goes on along this motion, forwards or back.
+    pub(crate) fn is_followed_by(&self, travel_mm: DVec3) -> bool {
+        let aside_mm = travel_mm - self.travel_mm * self.ratio(travel_mm);
+        aside_mm.length() < ASIDE * travel_mm.length()
     }
 
     /// Extrapolates displacements along this motion for the following travel; returns false if they

@@ -221,3 +221,26 @@ fn an_impossible_press_is_an_error_and_changes_nothing() {
         .unwrap_err();
     assert!(matches!(error, SolveError::Input { .. }), "{error}");
 }
+
+#[test]
+fn a_turn_of_the_way_is_foreseen() {
+    let mesh = block(&even(-10.0, 10.0, 10), &even(-8.0, 8.0, 8), &even(0.0, 8.0, 4));
+    let settings = SolverSettings {
+        tolerance: 1e-3,
+        ..SolverSettings::default()
+    };
+    let body = SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.49), settings).unwrap();
+    let mut state = body.rest();
+    for frame in 1..=20 {
+        press(&body, &mut state, &BALL, 8.0, 0.1 * f64::from(frame)).unwrap();
+    }
+    // From straight down to straight aside, and from there to straight up.
+    let mut pose = Pose::from_position(DVec3::new(0.0, 0.0, 6.0));
+    for step_mm in [DVec3::X, DVec3::Z].map(|way| 0.1 * way) {
+        for _ in 0..3 {
+            pose.position_mm += step_mm;
+            let frame = body.advance(&mut state, &BALL, &pose, 0.0).unwrap();
+            assert!(frame.iterations <= 4, "{}", frame.iterations);
+        }
+    }
+}

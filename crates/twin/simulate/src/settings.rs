@@ -28,8 +28,8 @@ pub struct SimulateSettings {
     pub max_path_nodes: usize,
     /// Number of edges over the radius to which an indenter's rim is rounded, because the force of
     /// a punch comes from its rim. It counts only where it makes edges shorter than elsewhere. The
-    /// edges at a rim are not shorter than half of those under the rest of the indenter, or three
-    /// tenths for a path. The pressure has half as many.
+    /// edges at a rim are not shorter than half of those under the rest of the indenter, or 45 %
+    /// for a path. The pressure has half as many.
     pub edges_per_rounding: f64,
     /// Mean distance between a table's frames over depth, mm. A table has at least five steps.
     pub depth_step_mm: f64,

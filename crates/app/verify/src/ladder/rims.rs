@@ -19,9 +19,12 @@ const DEEPEST_MM: f64 = 2.0;
 const N_FRAMES: usize = 20;
 /// Depths at which forces and pressures are compared, mm.
 const DEPTHS_MM: [f64; 3] = [0.5, 1.0, 2.0];
-/// Most nodes of a path's mesh before it is refined at rims. The refined meshes have about 7,000
-/// and 33,000.
-const PATH_NODES: [usize; 2] = [4_500, 22_000];
+/// Nodes of a path's mesh without rims. The meshes with fine rims have about 7,000 and 90,000.
+const PATH_NODES: [usize; 2] = [4_600, 60_000];
+/// Edges over the gel's height and over the contact's radius on the finer mesh, and over the radius
+/// of a rim.
+const FINER_EDGES: f64 = 14.0;
+const FINER_EDGES_PER_ROUNDING: f64 = 3.0;
 
 /// The shapes that are pressed.
 fn shapes() -> [(&'static str, Shape); 5] {
@@ -65,8 +68,9 @@ fn press(sensor: &Arc<Sensor>, shape: &Shape, finer: bool) -> Result<(Vec<Follow
     let fine = SimulateSettings::fine();
     let settings = if finer {
         SimulateSettings {
-            edges_per_height: 10.0,
-            edges_per_contact_radius: 10.0,
+            edges_per_height: FINER_EDGES,
+            edges_per_contact_radius: FINER_EDGES,
+            edges_per_rounding: FINER_EDGES_PER_ROUNDING,
             max_path_nodes: PATH_NODES[1],
             ..fine
         }

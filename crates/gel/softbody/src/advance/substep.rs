@@ -54,9 +54,20 @@ impl SoftBody {
             contacts,
         };
         let travel_mm = to.position_mm - from.position_mm;
-        let is_ahead = last
-            .as_ref()
-            .is_some_and(|last| last.go_on(travel_mm, x.displacements_mm));
+        let goes_on = last.as_ref().is_some_and(|last| last.is_followed_by(travel_mm));
+        let mut is_ahead = false;
+        if !goes_on && from != to {
+            let before = Step {
+                response: Response::new(self.material(), time_step_s, history),
+                shapes: &before,
+            };
+            is_ahead = buffers.predict(self, &before, &shapes, &mut x).unwrap_or(false);
+        }
+        if !is_ahead {
+            is_ahead = last
+                .as_ref()
+                .is_some_and(|last| last.go_on(travel_mm, x.displacements_mm));
+        }
         if is_ahead {
             drive.hold(self, part[1], x.displacements_mm);
         }
@@ -141,8 +152,10 @@ impl SoftBody {
             // Only obstacles are checked for distance, because the indenter moves.
             if index >= n_parts {
                 contact.look_for_room(shape, &self.boundary, &at_mm);
+                contact.look_inside_again(shape, &self.boundary, &at_mm);
+            } else {
+                contact.look_inside(shape, &self.boundary, &at_mm);
             }
-            contact.look_inside(shape, &self.boundary, &at_mm);
         }
         let old = &mut workspace.buffers(self).old;
         old.displacements_mm.clone_from(displacements_mm);

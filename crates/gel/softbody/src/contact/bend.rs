@@ -14,6 +14,9 @@ impl RigidBody<'_> {
     /// path.
     pub(super) fn bend_mm(&self, at_mm: [DVec3; 2], normals: [DVec3; 2]) -> f64 {
         let turn = normals[0].distance(normals[1]);
+        if turn == 0.0 {
+            return 0.0;
+        }
         let part = 1.0 / f64::from(N_PARTS);
         let mut sharpest = 0.0;
         let mut before = normals[0];
@@ -27,7 +30,7 @@ impl RigidBody<'_> {
             before = normal;
         }
         // Over one part of the path, the shape turns by `sharpest`.
-        let share = if turn > 0.0 { turn * part / sharpest } else { 0.0 };
+        let share = turn * part / sharpest;
         turn * at_mm[0].distance(at_mm[1]) * share.min(1.0)
     }
 }

@@ -113,7 +113,7 @@ mod tests {
         let cells = (0..N - 1).flat_map(|row| (0..N - 1).map(move |column| row * N + column));
         let triangles = cells
             .flat_map(|node| [[node, node + 1, node + N], [node + 1, node + N + 1, node + N]])
-            .map(|nodes| BoundaryTriangle::new(nodes, nodes.map(at), nodes.to_vec(), 1.0))
+            .map(|nodes| BoundaryTriangle::new(nodes, nodes.map(Some), nodes.map(at), 1.0))
             .collect();
         ((0..N * N).map(at).collect(), Boundary::new(nodes, triangles))
     }

@@ -1,6 +1,6 @@
 //! Contact of the whole boundary with one shape.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 
@@ -36,6 +36,8 @@ pub(crate) struct Contact {
     pub(super) steps_until_look: u32,
     /// The quadrature points inside of its triangles that are in use.
     inside: Vec<Inside>,
+    /// Those for the displacements at the end of the step, if the step ended with a look at them.
+    inside_next: Option<Vec<Inside>>,
     /// Depth of the deepest node when nodes were last pushed out in this step, mm.
     pushed_mm: f64,
     /// `None` if the coefficient is zero.
@@ -58,6 +60,7 @@ impl Clone for Contact {
             room: self.room.clone(),
             steps_until_look: self.steps_until_look,
             inside: self.inside.clone(),
+            inside_next: None,
             pushed_mm: self.pushed_mm,
             friction: self.friction.clone(),
         }
@@ -75,6 +78,7 @@ impl Clone for Contact {
         self.steps_until_look = source.steps_until_look;
         self.touches.clone_from(&source.touches);
         self.inside.clone_from(&source.inside);
+        self.inside_next = None;
         self.pushed_mm = source.pushed_mm;
         self.friction.clone_from(&source.friction);
     }
@@ -88,6 +92,7 @@ impl Contact {
             room: None,
             steps_until_look: 0,
             inside: Vec::new(),
+            inside_next: None,
             pushed_mm: f64::INFINITY,
             friction: (friction > 0.0).then(|| Friction::new(friction, n_boundary_nodes)),
         }
@@ -222,15 +227,30 @@ impl Contact {
         node_mm: &dyn Fn(u32) -> DVec3,
     ) -> bool {
         let before = std::mem::take(&mut self.inside);
+        self.inside_next = None;
         self.look_inside(shape, boundary, node_mm);
         let triangles = |inside: &[Inside]| -> Vec<[u32; 3]> {
             inside.iter().map(|inside| inside.point.corners()).collect()
         };
         let is_other = triangles(&before) != triangles(&self.inside);
         if !is_other {
-            self.inside = before;
+            let next = std::mem::replace(&mut self.inside, before);
+            self.inside_next = self.room.is_none().then_some(next);
         }
         is_other
+    }
+
+    /// Chooses the quadrature points of a step for a shape that has not moved since the last step.
+    pub(crate) fn look_inside_again(
+        &mut self,
+        shape: &RigidBody,
+        boundary: &Boundary,
+        node_mm: &dyn Fn(u32) -> DVec3,
+    ) {
+        match self.inside_next.take() {
+            Some(inside) if self.room.is_none() => self.inside = inside,
+            _ => self.look_inside(shape, boundary, node_mm),
+        }
     }
 
     /// Chooses the quadrature points of a step: inside of triangles where the normal of the shape
@@ -246,21 +266,24 @@ impl Contact {
             return;
         }
         let nodes = boundary.nodes.iter().zip(&mut self.touches);
-        let is_near: Vec<bool> = nodes
+        let mut normals: Vec<Option<DVec3>> = nodes
             .zip(&boundary.reach_mm)
             .map(|((point, touch), reach_mm)| {
                 let at_mm = point.parts().map(|(node, _)| node_mm(node)).sum();
-                shape.is_within(touch, at_mm, *reach_mm)
+                shape.normal_within(touch, at_mm, *reach_mm)
             })
             .collect();
+        let is_near: Vec<bool> = normals.iter().map(Option::is_some).collect();
         if !is_near.contains(&true) {
             return;
         }
-        let mut known = BTreeMap::new();
         let mut normals_of = |triangle: &BoundaryTriangle| {
-            triangle.nodes.map(|node| {
-                let normal = known.entry(node);
-                *normal.or_insert_with(|| shape.normal(node_mm(node)))
+            [0, 1, 2].map(|corner| {
+                let normal = || shape.normal(node_mm(triangle.nodes[corner]));
+                match triangle.corners[corner] {
+                    Some(index) => *normals[index as usize].get_or_insert_with(normal),
+                    None => normal(),
+                }
             })
         };
         // Where the shape turns sharply within a triangle, and beside that, because gel that slides

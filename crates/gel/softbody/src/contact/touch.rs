@@ -100,15 +100,17 @@ impl RigidBody<'_> {
         )
     }
 
-    /// Whether a point is nearer to the shape than `reach_mm`.
-    pub(super) fn is_within(&self, touch: &mut Touch, at_mm: DVec3, reach_mm: f64) -> bool {
+    /// The outward normal of the shape, in the gel's frame, if a point is nearer to the shape than
+    /// `reach_mm`.
+    pub(super) fn normal_within(&self, touch: &mut Touch, at_mm: DVec3, reach_mm: f64) -> Option<DVec3> {
         let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
         if touch.bound_mm(local_mm) >= reach_mm {
-            return false;
+            return None;
         }
+        let (distance_mm, normal) = self.nearest(local_mm);
         touch.measured_at_mm = local_mm;
-        touch.measured_mm = self.shape.signed_distance(local_mm).distance_mm;
-        touch.measured_mm < reach_mm
+        touch.measured_mm = distance_mm;
+        (distance_mm < reach_mm).then_some(normal)
     }
 
     /// Outward normal of the shape at its point nearest to this one, in the gel's frame.

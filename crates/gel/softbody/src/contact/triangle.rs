@@ -27,7 +27,7 @@ const MARGIN: f64 = 1.25;
 /// Stiffness of the points inside, relative to that of nodes. Stiffer ones widen a punch by a
 /// fraction of an edge and let its force rise in steps, as rows of nodes slide around its rim one
 /// after the other; softer ones narrow it.
-const SOFTNESS: f64 = 0.25;
+const SOFTNESS: f64 = 0.3;
 
 /// Factor of their stiffness where the triangle lies across a wall that is thinner than the
 /// triangle, because no node presses there.
@@ -36,23 +36,23 @@ const ACROSS_WALL: f64 = 2.5;
 /// A triangle of the boundary.
 pub(crate) struct BoundaryTriangle {
     pub(super) nodes: [u32; 3],
-    /// Indices of its free corners among the boundary's nodes.
-    free: Vec<u32>,
+    /// Index of each corner among the boundary's nodes, if it is free.
+    pub(super) corners: [Option<u32>; 3],
     /// Stiffness of all points inside together, N/mm.
     stiffness: f64,
     pub(super) longest_mm: f64,
 }
 
 impl BoundaryTriangle {
-    /// A triangle with these free corners; `stiffness` is the contact stiffness per area and
-    /// inverse edge length, MPa.
-    pub(crate) fn new(nodes: [u32; 3], at_mm: [DVec3; 3], free: Vec<u32>, stiffness: f64) -> Self {
+    /// A triangle between these nodes; `corners` are their indices among the boundary's nodes, and
+    /// `stiffness` is the contact stiffness per area and inverse edge length, MPa.
+    pub(crate) fn new(nodes: [u32; 3], corners: [Option<u32>; 3], at_mm: [DVec3; 3], stiffness: f64) -> Self {
         let [a, b, c] = at_mm;
         let area_mm2 = 0.5 * (b - a).cross(c - a).length();
         let size_mm = (2.0 * area_mm2).sqrt();
         Self {
             nodes,
-            free,
+            corners,
             stiffness: SOFTNESS * stiffness * area_mm2 / size_mm,
             longest_mm: a.distance(b).max(b.distance(c)).max(c.distance(a)),
         }
@@ -60,7 +60,7 @@ impl BoundaryTriangle {
 
     /// Its free corners, as indices of the boundary's nodes.
     pub(super) fn free_corners(&self) -> impl Iterator<Item = usize> {
-        self.free.iter().map(|&corner| corner as usize)
+        self.corners.into_iter().flatten().map(|corner| corner as usize)
     }
 
     /// The quadrature points of a triangle, given the bends of the shape along its sides: see

@@ -6,6 +6,7 @@ use super::block::Vector;
 use super::coarse::{CoarseSystem, Factors};
 use super::matrix::{Matrix, Pattern};
 use super::sweep::{Step, Vectors};
+use crate::parallel::join_halves;
 
 /// Scratch memory of the cycle.
 pub(crate) struct Cycle {
@@ -61,11 +62,20 @@ impl TwoLevel<'_> {
             }
         }
         self.coarse.solve(self.factors, coarse);
-        for (x, ends) in vectors.preconditioned.iter_mut().zip(self.ends) {
-            for end in ends {
-                *x = x.plus_scaled(coarse[*end as usize], 0.5);
+        let coarse = &*coarse;
+        let (first, second) = vectors.preconditioned.split_at_mut(pattern.halves.first);
+        let interpolate = |x: &mut [Vector], ends: &[[u32; 2]]| {
+            for (x, ends) in x.iter_mut().zip(ends) {
+                for end in ends {
+                    *x = x.plus_scaled(coarse[*end as usize], 0.5);
+                }
             }
-        }
+        };
+        let (first_ends, second_ends) = self.ends.split_at(pattern.halves.first);
+        join_halves(
+            || interpolate(first, first_ends),
+            || interpolate(second, second_ends),
+        );
         matrix.volumes(pattern, &vectors.preconditioned, volumes);
         let squares = matrix.sweep_backward(pattern, vectors, volumes);
         let volumes: f64 = volumes.iter().map(|&volume| f64::from(volume).powi(2)).sum();

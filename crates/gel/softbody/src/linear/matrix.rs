@@ -61,6 +61,14 @@ pub(crate) struct FineSink<'a> {
     slopes: &'a mut [Vector],
 }
 
+impl FineSink<'_> {
+    fn clear(&mut self) {
+        self.diagonal.fill(Block::default());
+        self.blocks.fill(Block::default());
+        self.slopes.fill(Vector::ZERO);
+    }
+}
+
 /// Rows of sorted columns without repetition.
 fn csr(rows: Vec<Vec<u32>>) -> (Vec<u32>, Vec<u32>) {
     let (mut starts, mut columns) = (vec![0], Vec::new());
@@ -179,16 +187,13 @@ impl Matrix {
     /// Clears the matrix, and returns the sinks of the two halves.
     pub(crate) fn halves<'a>(&'a mut self, pattern: &'a Pattern) -> [FineSink<'a>; 2] {
         self.covered.clear();
-        self.diagonal.fill(Block::default());
-        self.blocks.fill(Block::default());
-        self.slopes.fill(Vector::ZERO);
         let first_row = pattern.halves.first;
         let first_block = pattern.rows[first_row] as usize;
         let first_slope = pattern.slope_rows[first_row] as usize;
         let diagonal = self.diagonal.split_at_mut(first_row);
         let blocks = self.blocks.split_at_mut(first_block);
         let slopes = self.slopes.split_at_mut(first_slope);
-        [
+        let mut sinks = [
             FineSink {
                 pattern,
                 first_row: 0,
@@ -207,7 +212,10 @@ impl Matrix {
                 first_slope,
                 slopes: slopes.1,
             },
-        ]
+        ];
+        let [first, second] = &mut sinks;
+        join_halves(|| first.clear(), || second.clear());
+        sinks
     }
 
     /// The sink of the elements between the halves.

@@ -45,7 +45,7 @@ impl Buffers {
             let slots = body.elements.slots.iter();
             let of_elements = slots.map(|&slot| &self.coarse_tangents[slot as usize]);
             body.coarse.fill(tangent, of_elements);
-            for_each_touch(body, step, x, &mut |point, stiffness| {
+            for_each_touch(body, step, x, &mut |_, point, stiffness| {
                 let ends = point.parts().flat_map(|(node, part)| {
                     let ends = body.ends[node as usize];
                     ends.map(|end| (end, 0.5 * part as f32))
@@ -106,7 +106,7 @@ impl Buffers {
             *extra = Block::diagonal((self.damping * stiffness) as f32);
         }
         self.matrix.take_back();
-        for_each_touch(body, step, x, &mut |point, stiffness| {
+        for_each_touch(body, step, x, &mut |_, point, stiffness| {
             self.matrix
                 .add_at(&body.pattern, point.parts(), &stiffness.as_mat3());
         });
@@ -114,13 +114,19 @@ impl Buffers {
     }
 }
 
-/// Calls `add` with the stiffness of every point in contact, and with that of friction, N/mm.
-fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(&ContactPoint, &DMat3)) {
-    for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
+/// Calls `add` with the stiffness of every point in contact, and with that of friction, N/mm, and
+/// the index of the shape.
+pub(super) fn for_each_touch(
+    body: &SoftBody,
+    step: &Step,
+    x: &Unknowns,
+    add: &mut dyn FnMut(usize, &ContactPoint, &DMat3),
+) {
+    for (of, (shape, contact)) in step.shapes.iter().zip(x.contacts.iter()).enumerate() {
         for (point, touch) in contact.each(&body.boundary) {
             if touch.force_n > 0.0 {
                 let at_mm = body.point_mm(point, x.displacements_mm);
-                add(point, &shape.stiffness(touch, point, at_mm));
+                add(of, point, &shape.stiffness(touch, point, at_mm));
             }
         }
         let Some(friction) = contact.friction() else {
@@ -128,7 +134,7 @@ fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMu
         };
         for (index, (point, at_mm)) in body.boundary_mm(x.displacements_mm).enumerate() {
             if let Some(stiffness) = friction.stiffness(index, shape, at_mm, point.stiffness) {
-                add(point, &stiffness);
+                add(of, point, &stiffness);
             }
         }
     }

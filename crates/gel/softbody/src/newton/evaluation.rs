@@ -51,10 +51,15 @@ impl Buffers {
         let nodes_mm = &body.mesh.nodes_mm;
         let before_mm = |node: u32| nodes_mm[node as usize] + self.old.displacements_mm[node as usize];
         let now_mm = |node: u32| nodes_mm[node as usize] + x.displacements_mm[node as usize];
+        self.boundary_mm.clear();
+        self.boundary_mm
+            .extend(body.boundary_mm(x.displacements_mm).map(|(_, at_mm)| at_mm));
         for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
             contact.check_room(shape, &body.boundary, [&before_mm, &now_mm]);
-            for (point, touch) in contact.each_mut(&body.boundary) {
-                let at_mm = body.point_mm(point, x.displacements_mm);
+            // The nodes of the boundary are the first points.
+            for (index, (point, touch)) in contact.each_mut(&body.boundary).enumerate() {
+                let of_node_mm = self.boundary_mm.get(index).copied();
+                let at_mm = of_node_mm.unwrap_or_else(|| body.point_mm(point, x.displacements_mm));
                 evaluation.energy += shape.touch(touch, point, at_mm);
                 if touch.force_n > 0.0 {
                     for (node, part) in point.parts() {

@@ -5,6 +5,7 @@ mod direction;
 mod evaluation;
 mod iteration;
 mod line_search;
+mod prediction;
 mod step;
 mod workspace;
 

@@ -44,6 +44,8 @@ pub(crate) struct Buffers {
     /// Gradient of the energy at each node, N; at bonded nodes, the force that holds them;
     /// `[n_nodes]`.
     pub(crate) gradient_n: Vec<DVec3>,
+    /// Positions of the boundary's nodes, mm.
+    pub(super) boundary_mm: Vec<DVec3>,
     /// `[n_free]`
     pub(crate) direction_mm: Vec<DVec3>,
     /// Pressures at which the tangent is taken, MPa. They are separate unknowns, as in a mixed
@@ -82,6 +84,7 @@ impl Workspace {
                 corners: Vec::new(),
                 damping: 0.0,
                 gradient_n: vec![DVec3::ZERO; n_nodes],
+                boundary_mm: Vec::new(),
                 direction_mm: vec![DVec3::ZERO; n_free],
                 foreseen_mpa: vec![0.0; body.volume_stiffness.len()],
                 start_mm: vec![DVec3::ZERO; n_nodes],
