@@ -78,17 +78,6 @@ pub(super) fn all() -> Vec<Case> {
 }
 
 impl Case {
-    /// The same press down to a smaller depth.
-    pub(super) fn as_deep_as(&self, most_mm: f64) -> Self {
-        let depths_mm = self.depths_mm.iter().copied();
-        Self {
-            name: self.name.clone(),
-            shape: self.shape.clone(),
-            depths_mm: depths_mm.filter(|&depth_mm| depth_mm <= most_mm).collect(),
-            ..*self
-        }
-    }
-
     /// Shear modulus, kPa.
     pub(super) fn shear_modulus_kpa(&self) -> f64 {
         YOUNGS_MODULUS_KPA / (2.0 * (1.0 + self.poissons_ratio))

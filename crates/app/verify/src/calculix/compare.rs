@@ -7,20 +7,19 @@ use anyhow::{Context, Result, bail, ensure};
 use twintac_simulate::{Followed, Gel, SimulateSettings};
 use twintac_softbody::Element;
 
-use super::case::{Case, line_mm, taxels_mm};
+use super::case::{Case, Level, line_mm, taxels_mm};
 use super::difference::{percent, pressure_percent};
 use super::reference::{Reference, ReferenceFrame};
 
-/// Depth of the presses with quadratic elements, which take long, mm.
-const QUADRATIC_MM: f64 = 1.0;
+/// Factor by which the mesh of the quadratic reference is finer than that of the comparison, and
+/// its largest number of nodes before rims are refined.
+pub(super) const FINER: f64 = 1.4;
+const FINER_NODES: usize = 40_000;
 
 /// A press in two programs, or with two kinds of elements.
 pub(super) struct Compared {
     /// Name of the case.
     pub(super) case: String,
-    /// Whether the other values are those of CalculiX, and not of this project's quadratic
-    /// elements.
-    pub(super) is_calculix: bool,
     /// Nodes of this project's mesh.
     pub(super) n_nodes: usize,
     /// One frame for each depth.
@@ -49,7 +48,7 @@ pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
             .iter()
             .copied()
             .take(reference.frames.len())),
-        "{}: CalculiX went to other depths; run it again",
+        "{}: the reference has other depths; compute it again",
         case.name
     );
     // The first frame is the first contact, without depth.
@@ -76,22 +75,23 @@ pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
         });
     Ok(Compared {
         case: case.name.clone(),
-        is_calculix: true,
         n_nodes: followed.n_nodes,
         frames: frames.collect::<Result<_>>()?,
     })
 }
 
-/// Presses the gel with composite and with quadratic elements on the same nodes, down to
-/// [`QUADRATIC_MM`].
-pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
-    let case = case.as_deep_as(QUADRATIC_MM);
+/// Presses the gel with quadratic elements, on a mesh as fine as that of the comparison or on a
+/// finer one. A press that ends early gives the depths until then.
+pub(super) fn quadratic(case: &Case, level: Level) -> Result<Reference> {
     let mut settings = SimulateSettings::fine();
     settings.solver.element = Element::Quadratic;
-    let followed = follow(&case, settings)?;
-    if let Some(failure) = followed.failure {
-        bail!("{}, quadratic elements: {failure}", case.name);
+    if level == Level::Fine {
+        settings.edges_per_height *= FINER;
+        settings.edges_per_contact_radius *= FINER;
+        settings.edges_per_rounding *= FINER;
+        settings.max_path_nodes = FINER_NODES;
     }
+    let followed = follow(case, settings)?;
     let frames = followed.frames[1..].iter().zip(&case.depths_mm);
     let frames = frames.map(|(frame, &depth_mm)| {
         let pressure = |name: &str| frame.pressure_kpa.get(name).copied().context("a pressure lacks");
@@ -108,16 +108,12 @@ pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
                 .collect::<Result<_>>()?,
         })
     });
-    let reference = Reference {
+    Ok(Reference {
         case: case.name.clone(),
-        is_fine: true,
+        is_fine: level == Level::Fine,
         n_elements: followed.n_tets,
         n_nodes: followed.n_nodes,
         frames: frames.collect::<Result<_>>()?,
-    };
-    Ok(Compared {
-        is_calculix: false,
-        ..compare(&case, &reference)?
     })
 }
 

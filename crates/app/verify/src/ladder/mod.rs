@@ -24,7 +24,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 
-use crate::calculix;
+use crate::calculix::{self, Source};
 use crate::rung::{Effort, Rung, number};
 
 /// All tests, in order.
@@ -118,6 +118,10 @@ pub(crate) struct Options {
     /// whose names start with this text
     #[arg(long, value_name = "CASE")]
     ccx: Option<String>,
+    /// Compute the references of test 8 by quadratic elements (minutes a case) for the cases whose
+    /// names start with this text
+    #[arg(long, value_name = "CASE")]
+    quadratic: Option<String>,
     /// Folder to which the pages are written
     #[arg(long, default_value = "docs/verification")]
     folder: PathBuf,
@@ -126,8 +130,13 @@ pub(crate) struct Options {
 /// Runs the tests, and returns whether all limits hold.
 pub(crate) fn run(options: &Options) -> Result<bool> {
     let rungs = chosen(&options.rungs)?;
-    if let Some(prefix) = &options.ccx {
-        calculix::compute_references(prefix)?;
+    for (source, prefix) in [
+        (Source::Calculix, &options.ccx),
+        (Source::Quadratic, &options.quadratic),
+    ] {
+        if let Some(prefix) = prefix {
+            calculix::compute_references(source, prefix)?;
+        }
     }
     let effort = if options.quick {
         Effort::Quick

@@ -33,6 +33,15 @@ impl Drive<'_> {
         }
     }
 
+    /// Travel of the indenter between two fractions of the motion, mm. For bonded nodes it is in a
+    /// direction of its own, so that a part of their motion is extrapolated from the part before.
+    pub(super) fn travel_mm(&self, [from, to]: [f64; 2]) -> DVec3 {
+        match self {
+            Self::Indenter { .. } => self.pose(to).position_mm - self.pose(from).position_mm,
+            Self::Bonded { .. } => (to - from) * DVec3::X,
+        }
+    }
+
     /// Largest fraction of the motion for one step: a node inside of the moved shape must still be
     /// nearest to the side through which it entered.
     pub(super) fn largest_part(&self, max_travel_mm: f64) -> f64 {

@@ -57,14 +57,14 @@ impl SoftBody {
             .iter()
             .map(|&node| state.displacements_mm[node as usize])
             .collect();
-        self.drive(
-            state,
-            &Drive::Bonded {
-                from,
-                to: displacements_mm,
-            },
-            time_step_s,
-        )
+        state.last = None;
+        let drive = Drive::Bonded {
+            from,
+            to: displacements_mm,
+        };
+        let frame = self.drive(state, &drive, time_step_s);
+        state.last = None;
+        frame
     }
 
     fn drive(&self, state: &mut State, drive: &Drive, time_step_s: f64) -> Result<Frame, SolveError> {

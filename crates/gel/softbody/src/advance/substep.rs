@@ -53,7 +53,7 @@ impl SoftBody {
             pressures_mpa,
             contacts,
         };
-        let travel_mm = to.position_mm - from.position_mm;
+        let travel_mm = drive.travel_mm(part);
         let goes_on = last.as_ref().is_some_and(|last| last.is_followed_by(travel_mm));
         let mut is_ahead = false;
         if !goes_on && from != to {
@@ -105,14 +105,14 @@ impl SoftBody {
                 displacements_mm,
                 history,
             );
+            if travel_mm != DVec3::ZERO {
+                last.get_or_insert_default().set(
+                    travel_mm,
+                    displacements_mm,
+                    &buffers.old.displacements_mm,
+                );
+            }
             if let Drive::Indenter { .. } = drive {
-                if travel_mm != DVec3::ZERO {
-                    last.get_or_insert_default().set(
-                        travel_mm,
-                        displacements_mm,
-                        &buffers.old.displacements_mm,
-                    );
-                }
                 state.gel_from_indenter = Some(to);
             }
         } else {
