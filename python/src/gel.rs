@@ -155,6 +155,14 @@ impl Gel {
         })
     }
 
+    /// Shows the gel in a notebook, to be pressed with sliders (`twintac.widget.GelWidget`).
+    /// Without ipywidgets, or if the sensor has no indenter, a drawing of the sensor is shown.
+    fn _ipython_display_(&self, py: Python<'_>) -> PyResult<()> {
+        py.import("twintac._display")?
+            .call_method1("gel", (self.sensor.clone(),))
+            .map(|_| ())
+    }
+
     /// Supports `pickle` and `copy`: returns the function that restores the object, and its state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, self)
@@ -226,6 +234,12 @@ impl Pressed {
             .flat_map(|frame| frame.port_pressure_kpa.clone())
             .collect();
         rows(py, readings, [frames.len(), self.pressed.readings_kpa().len()])
+    }
+
+    /// The picture that a notebook shows: readings and force over depth, as the text of an SVG
+    /// file.
+    fn _repr_svg_(&self) -> String {
+        self.pressed.svg()
     }
 
     /// Draws readings and force over depth with Matplotlib.

@@ -98,6 +98,12 @@ impl Sensor {
         reduced(py, self)
     }
 
+    /// The picture that a notebook shows: the sensor from above and in section, as the text of an
+    /// SVG file.
+    fn _repr_svg_(&self) -> String {
+        self.sensor.svg()
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<Sensor {:?} with {} taxels>",

@@ -1,11 +1,12 @@
 """Tests that the notebook widget presses the gel according to its sliders."""
 
+import sys
 
 import pytest
 
 pytest.importorskip("ipywidgets")
 
-from twintac import Error, Pose, Sensor  # noqa: E402
+from twintac import Error, Gel, Pose, Press, Sensor  # noqa: E402
 from twintac.widget import GelWidget  # noqa: E402
 
 
@@ -54,3 +55,23 @@ def test_what_cannot_be_is_said() -> None:
     for depth_mm in (0.0, -1.0, float("nan"), float("inf")):
         with pytest.raises(Error, match="deepest_mm"):
             GelWidget(Sensor.phystac(), deepest_mm=depth_mm)
+
+
+def test_a_gel_shows_itself_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    display = pytest.importorskip("IPython.display")
+    shown: list[object] = []
+    monkeypatch.setattr(display, "display", shown.append)
+    sensor = Sensor.phystac()
+    Gel(sensor)._ipython_display_()
+    assert isinstance(shown[0], GelWidget)
+    monkeypatch.setitem(sys.modules, "twintac.widget", None)
+    Gel(sensor)._ipython_display_()
+    assert isinstance(shown[1], Sensor)
+    assert "<svg" in sensor._repr_svg_() and "34" in sensor._repr_svg_()
+
+
+def test_a_press_shows_itself_in_a_notebook() -> None:
+    pressed = Gel(Sensor.phystac(), {"max_nodes": 800}).press(Press("sphere-25", depth_mm=0.5))
+    picture = pressed._repr_svg_()
+    for part in ("<svg", "simulated", "taxel 7", "depth below first touch, mm", "force, N"):
+        assert part in picture, part

@@ -106,6 +106,10 @@ class Sensor:
         """Frame rate of the sensor, Hz."""
     def describe(self) -> str:
         """The whole description, with units, as a text for people."""
+    def _repr_svg_(self) -> str:
+        """The picture that a notebook shows: the sensor from above and in section, as the text of an SVG
+        file.
+        """
 
 @final
 class Press:
@@ -208,6 +212,10 @@ class Gel:
 
         Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
         gel, and for a point that is outside the gel or has the name of a taxel.
+        """
+    def _ipython_display_(self) -> None:
+        """Shows the gel in a notebook, to be pressed with sliders (`twintac.widget.GelWidget`). Without
+        ipywidgets, or if the sensor has no indenter, a drawing of the sensor is shown.
         """
 
 @final
@@ -381,6 +389,8 @@ class Pressed:
         `[n_frames, n_taxels]`. An ideal barometer without gain, delay and relaxation would read
         this. A trained `Twin` predicts what a real one reads.
         """
+    def _repr_svg_(self) -> str:
+        """The picture that a notebook shows: readings and force over depth, as the text of an SVG file."""
     def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
         """Draws readings and force over depth with Matplotlib.
 

@@ -23,7 +23,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | c
          since and nothing says so; FILE: the metrics.json of `reproduce --paper` at this commit, which is kept first
   pictures  makes the pictures of the documents again: all, or those with NAME in their names; TWINTAC_PYTHON names a Python with twintac,
          CHROMIUM a browser; `results` says which pictures are of older code
-  bench  softbody: how fast presses are followed, and how far off tight solutions they are
+  bench  softbody: how fast presses are followed, and how far off tight solutions they are; writes docs/benchmarks/softbody.*
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*

@@ -222,6 +222,8 @@ mod error;
 mod gel;
 #[cfg(feature = "map")]
 mod map;
+#[cfg(feature = "map")]
+mod picture;
 mod press;
 #[cfg(feature = "live")]
 mod reader;

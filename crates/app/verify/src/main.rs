@@ -51,7 +51,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Measure how fast presses are followed, and the error against a tightly converged solution on
-    /// the same mesh
+    /// the same mesh; writes docs/benchmarks/softbody.*
     Softbody {
         /// Print one JSON line for each case instead of a table
         #[arg(long)]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use anyhow::{Context, Result, bail, ensure};
+use twintac_protocol::PressPath;
 use twintac_simulate::{Followed, Gel, SimulateSettings};
 use twintac_softbody::Element;
 
@@ -15,6 +16,9 @@ use super::reference::{Reference, ReferenceFrame};
 /// its largest number of nodes before rims are refined.
 pub(super) const FINER: f64 = 1.4;
 const FINER_NODES: usize = 40_000;
+
+/// Frames of that reference from depth to depth: on a fine mesh, long steps have no solution.
+const QUADRATIC_RATE_HZ: f64 = 5.0;
 
 /// A press in two programs, or with two kinds of elements.
 pub(super) struct Compared {
@@ -38,7 +42,7 @@ pub(super) struct ComparedFrame {
 
 /// Presses the gel as `twintac simulate --sensor F --path F` does, with the default settings.
 pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
-    let followed = follow(case, SimulateSettings::fine())?;
+    let followed = follow(case, SimulateSettings::fine(), None)?;
     if let Some(failure) = followed.failure {
         bail!("{}: {failure}", case.name);
     }
@@ -91,9 +95,16 @@ pub(super) fn quadratic(case: &Case, level: Level) -> Result<Reference> {
         settings.edges_per_rounding *= FINER;
         settings.max_path_nodes = FINER_NODES;
     }
-    let followed = follow(case, settings)?;
-    let frames = followed.frames[1..].iter().zip(&case.depths_mm);
-    let frames = frames.map(|(frame, &depth_mm)| {
+    let followed = follow(case, settings, Some(QUADRATIC_RATE_HZ))?;
+    let at_depth = |depth_mm: f64| {
+        let mut frames = followed.frames.iter();
+        frames.find(|frame| (frame.depth_mm - depth_mm).abs() < 1e-6)
+    };
+    let reached = case
+        .depths_mm
+        .iter()
+        .filter_map(|&depth_mm| Some((at_depth(depth_mm)?, depth_mm)));
+    let frames = reached.map(|(frame, depth_mm)| {
         let pressure = |name: &str| frame.pressure_kpa.get(name).copied().context("a pressure lacks");
         let taxels = taxels_mm().into_iter();
         Ok(ReferenceFrame {
@@ -117,11 +128,19 @@ pub(super) fn quadratic(case: &Case, level: Level) -> Result<Reference> {
     })
 }
 
-fn follow(case: &Case, settings: SimulateSettings) -> Result<Followed> {
+/// Follows a press, with a frame at each depth, or at this rate with a second from depth to depth.
+fn follow(case: &Case, settings: SimulateSettings, rate_hz: Option<f64>) -> Result<Followed> {
     let sensor = case.sensor()?;
     let indenter = sensor.indenters.first().context("the sensor has an indenter")?;
-    Ok(Gel::new(sensor.clone(), settings)
-        .follow(&indenter.shape, &case.path()?, &mut || ControlFlow::Continue(()))?)
+    let path = PressPath {
+        rate_hz,
+        ..case.path()?
+    };
+    Ok(Gel::new(sensor.clone(), settings).follow(
+        &indenter.shape,
+        &path,
+        &mut || ControlFlow::Continue(()),
+    )?)
 }
 
 impl ComparedFrame {

@@ -19,12 +19,11 @@ const DEEPEST_MM: f64 = 2.0;
 const N_FRAMES: usize = 20;
 /// Depths at which forces and pressures are compared, mm.
 const DEPTHS_MM: [f64; 3] = [0.5, 1.0, 2.0];
-/// Nodes of a path's mesh without rims. The meshes with fine rims have about 7,000 and 90,000.
-const PATH_NODES: [usize; 2] = [4_600, 60_000];
-/// Edges over the gel's height and over the contact's radius on the finer mesh, and over the radius
+/// Nodes of a path's mesh without rims. The meshes with fine rims have about 7,000 and 120,000.
+const PATH_NODES: [usize; 2] = [4_600, 80_000];
+/// Edges of the finer mesh: over the gel's height, over the contact's radius, and over the radius
 /// of a rim.
-const FINER_EDGES: f64 = 14.0;
-const FINER_EDGES_PER_ROUNDING: f64 = 3.0;
+const FINER_EDGES: [f64; 3] = [12.0, 17.0, 3.0];
 
 /// The shapes that are pressed.
 fn shapes() -> [(&'static str, Shape); 5] {
@@ -68,9 +67,9 @@ fn press(sensor: &Arc<Sensor>, shape: &Shape, finer: bool) -> Result<(Vec<Follow
     let fine = SimulateSettings::fine();
     let settings = if finer {
         SimulateSettings {
-            edges_per_height: FINER_EDGES,
-            edges_per_contact_radius: FINER_EDGES,
-            edges_per_rounding: FINER_EDGES_PER_ROUNDING,
+            edges_per_height: FINER_EDGES[0],
+            edges_per_contact_radius: FINER_EDGES[1],
+            edges_per_rounding: FINER_EDGES[2],
             max_path_nodes: PATH_NODES[1],
             ..fine
         }

@@ -54,20 +54,11 @@ impl SoftBody {
             contacts,
         };
         let travel_mm = drive.travel_mm(part);
-        let goes_on = last.as_ref().is_some_and(|last| last.is_followed_by(travel_mm));
-        let mut is_ahead = false;
-        if !goes_on && from != to {
-            let before = Step {
-                response: Response::new(self.material(), time_step_s, history),
-                shapes: &before,
-            };
-            is_ahead = buffers.predict(self, &before, &shapes, &mut x).unwrap_or(false);
-        }
-        if !is_ahead {
-            is_ahead = last
+        let turns = from != to && !last.as_ref().is_some_and(|last| last.is_followed_by(travel_mm));
+        let is_ahead = turns && buffers.predict(self, &step, &before, &mut x).unwrap_or(false)
+            || last
                 .as_ref()
                 .is_some_and(|last| last.go_on(travel_mm, x.displacements_mm));
-        }
         if is_ahead {
             drive.hold(self, part[1], x.displacements_mm);
         }
@@ -106,11 +97,8 @@ impl SoftBody {
                 history,
             );
             if travel_mm != DVec3::ZERO {
-                last.get_or_insert_default().set(
-                    travel_mm,
-                    displacements_mm,
-                    &buffers.old.displacements_mm,
-                );
+                last.get_or_insert_default()
+                    .set(travel_mm, displacements_mm, &buffers.old.displacements_mm);
             }
             if let Drive::Indenter { .. } = drive {
                 state.gel_from_indenter = Some(to);

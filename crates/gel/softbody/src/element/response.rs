@@ -5,6 +5,7 @@ use twintac_material::Material;
 use crate::relaxation::{History, Relaxation, Symmetric};
 
 /// Everything other than the displacements that the stress at a point depends on during a step.
+#[derive(Clone)]
 pub(crate) struct Response<'a> {
     pub(crate) material: &'a Material,
     pub(crate) relaxation: Relaxation,

@@ -11,15 +11,20 @@ const FORCING: f64 = 0.1;
 
 impl Buffers {
     /// Moves the unknowns, which are at the equilibrium before a step, by their change to first
-    /// order in the motion of the shapes to `moved`: every point in contact stays in contact.
-    /// Returns false, without a change, if nothing is in contact with a shape that moves.
+    /// order in the motion of the shapes, which were at `before`: every point in contact stays in
+    /// contact. Returns false, without a change, if nothing is in contact with a shape that moves.
     pub(crate) fn predict(
         &mut self,
         body: &SoftBody,
-        before: &Step,
-        moved: &[RigidBody],
+        step: &Step,
+        before: &[RigidBody],
         x: &mut Unknowns,
     ) -> Result<bool, Failure> {
+        let moved = step.shapes;
+        let before = &Step {
+            response: step.response.clone(),
+            shapes: before,
+        };
         self.damping = 0.0;
         self.evaluate(body, before, x).ok_or(Failure::Inverted)?;
         let mut any = false;
