@@ -144,7 +144,10 @@ fn nodes_of(case: &Case, source: Source, reference: &Reference) -> Figure {
 /// depths, its pressures are not accurate enough to be a reference (`is_reference` is false).
 fn figures_of(compared: &Compared, source: Source, is_reference: bool) -> Vec<Figure> {
     let largest = |errors: &mut dyn Iterator<Item = f64>| errors.map(f64::abs).fold(0.0, f64::max);
-    let case = format!("{} beside {}", compared.case, source.name());
+    let case = match source {
+        Source::Calculix => compared.case.clone(),
+        Source::Quadratic => format!("{} beside {}", compared.case, source.name()),
+    };
     let mut figures = vec![Figure::told(
         format!("{case}: nodes"),
         compared.n_nodes as f64,

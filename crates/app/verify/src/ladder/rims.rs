@@ -19,7 +19,7 @@ const DEEPEST_MM: f64 = 2.0;
 const N_FRAMES: usize = 20;
 /// Depths at which forces and pressures are compared, mm.
 const DEPTHS_MM: [f64; 3] = [0.5, 1.0, 2.0];
-/// Nodes of a path's mesh without rims. The meshes with fine rims have about 7,000 and 120,000.
+/// Nodes of a path's mesh without rims. The meshes with fine rims have about 7,000 and 90,000.
 const PATH_NODES: [usize; 2] = [4_600, 80_000];
 /// Edges of the finer mesh: over the gel's height, over the contact's radius, and over the radius
 /// of a rim.
