@@ -107,8 +107,8 @@ class Sensor:
     def describe(self) -> str:
         """The whole description, with units, as a text for people."""
     def _repr_svg_(self) -> str:
-        """The picture that a notebook shows: the sensor from above and in section, as the text of an SVG
-        file.
+        """The picture that a notebook shows: the sensor from above and in section, as the text of an
+        SVG file.
         """
 
 @final
@@ -214,8 +214,8 @@ class Gel:
         gel, and for a point that is outside the gel or has the name of a taxel.
         """
     def _ipython_display_(self) -> None:
-        """Shows the gel in a notebook, to be pressed with sliders (`twintac.widget.GelWidget`). Without
-        ipywidgets, or if the sensor has no indenter, a drawing of the sensor is shown.
+        """Shows the gel in a notebook, to be pressed with sliders (`twintac.widget.GelWidget`).
+        Without ipywidgets, or if the sensor has no indenter, a drawing of the sensor is shown.
         """
 
 @final
@@ -390,7 +390,9 @@ class Pressed:
         this. A trained `Twin` predicts what a real one reads.
         """
     def _repr_svg_(self) -> str:
-        """The picture that a notebook shows: readings and force over depth, as the text of an SVG file."""
+        """The picture that a notebook shows: readings and force over depth, as the text of an SVG
+        file.
+        """
     def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
         """Draws readings and force over depth with Matplotlib.
 
