@@ -62,7 +62,8 @@ const TABLE: Fineness = Fineness {
 };
 
 /// Chosen so that five shapes with rims, pressed to 2 mm on 7,000 nodes, are near the solution on
-/// 90,000 nodes in force and pressure (`cargo xtask verify rims`); on other presses errors are larger.
+/// 90,000 nodes in force and pressure (`cargo xtask verify rims`); errors of other presses are
+/// larger.
 const PATH: Fineness = Fineness {
     scale: 0.7,
     sharpest: 0.45,
