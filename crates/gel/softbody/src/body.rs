@@ -6,6 +6,7 @@ use glam::DVec3;
 use twintac_mesh::TetMesh;
 use twintac_shape::{Pose, SignedDistance};
 
+use crate::bonded::BondedSurface;
 use crate::contact::{Boundary, ContactPoint};
 use crate::element::Elements;
 use crate::linear::coarse::{CoarseSystem, Factors};
@@ -50,6 +51,8 @@ pub struct SoftBody {
     /// Sum of `μ V |G|²` over the quadrature points around each node, N/mm: an estimate of the
     /// node's own stiffness.
     pub(crate) node_stiffness: Vec<f64>,
+    /// Where pressures are corrected; `None` for elements that do not gain by it.
+    pub(crate) bonded_surface: Option<BondedSurface>,
     /// Cube root of the volume, mm.
     pub(crate) size_mm: f64,
 }

@@ -3,8 +3,9 @@
 use twintac_mesh::TetMesh;
 
 use crate::body::{SoftBody, Sources};
+use crate::bonded::BondedSurface;
 use crate::contact::{Boundary, BoundaryTriangle, ContactPoint};
-use crate::element::{EDGES, Elements, NODES, Side};
+use crate::element::{EDGES, Element, Elements, NODES, Side};
 use crate::linear::coarse::CoarseSystem;
 use crate::linear::direct::DirectSystem;
 use crate::linear::matrix::Pattern;
@@ -39,7 +40,18 @@ impl SoftBody {
             .collect();
         let parents = parents(&coarse_tets, &ends);
         let sides: Vec<Side> = parents.iter().map(|nodes| halves.side(nodes)).collect();
-        let elements = Elements::new(settings.element, &mesh.nodes_mm, &parents, &children, &sides);
+        let elements = Elements::new(
+            settings.element,
+            &mesh.nodes_mm,
+            &mesh.sets.bonded,
+            &parents,
+            &children,
+            &sides,
+        );
+        let bonded_surface = (settings.element != Element::Composite)
+            .then(|| BondedSurface::new(&elements, &mesh, &parents, settings.element.flat_share()))
+            .transpose()?
+            .flatten();
 
         let modulus_mpa = MPA_PER_KPA * material.volume_modulus_kpa();
         let volume_stiffness: Vec<f64> = corner_volumes_mm3(&elements, &coarse_tets, coarse_nodes_mm.len())
@@ -100,6 +112,7 @@ impl SoftBody {
             force_sources,
             volume_sources,
             node_stiffness,
+            bonded_surface,
             size_mm,
             rest_factors: None,
         };

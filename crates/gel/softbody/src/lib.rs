@@ -20,7 +20,8 @@
 //!
 //! The tetrahedra have a linear pressure, and displacements of twice the resolution, so that nearly
 //! incompressible gels do not lock and their pressure is accurate: each tetrahedron of the mesh is
-//! cut into eight, on which the displacements are linear ([`Element`]).
+//! cut into eight, on which the displacements are linear. In the layer that is bonded, they are
+//! mostly quadratic ([`Element`]).
 //!
 //! ```text
 //! build        makes a body from a mesh: numbering, elements, boundary, linear systems
@@ -38,6 +39,7 @@
 //!              them triangular factors of the system on the coarse mesh
 //! sensitivity/ how a press changes with its material
 //! results      pressure, stress and reaction forces of a state
+//! bonded       the pressure where the body is bonded, from the forces that hold it
 //! ```
 //!
 //! ## Linear systems
@@ -106,6 +108,7 @@
 
 mod advance;
 mod body;
+mod bonded;
 mod build;
 mod clock;
 mod contact;

@@ -9,7 +9,9 @@ use crate::nodal::moved;
 use crate::state::State;
 
 impl SoftBody {
-    /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression; `[n_nodes]`.
+    /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression; `[n_nodes]`. At
+    /// bonded nodes it is more accurate than elsewhere, because there it follows from the forces
+    /// that hold them, except for [`Element::Composite`](crate::Element::Composite).
     #[must_use]
     pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
         let response = self.response(state);
@@ -21,14 +23,14 @@ impl SoftBody {
         &self,
         response: &Response,
         displacements_mm: &[DVec3],
-        pressures_mpa: &[f64],
+        solved_mpa: &[f64],
     ) -> Vec<f64> {
         let shares = element::hydrostatic_shares(&self.elements, response, displacements_mm);
         // Averaged in the same way as the volume changes that give the rest of the pressure.
-        let pressures_mpa = shares.map_or(pressures_mpa.to_vec(), |shares| {
+        let pressures_mpa = shares.map_or(solved_mpa.to_vec(), |shares| {
             let shares = shares.as_flattened();
             let modulus_mpa = MPA_PER_KPA * self.material.volume_modulus_kpa();
-            let nodes = pressures_mpa.iter().zip(&self.volume_stiffness);
+            let nodes = solved_mpa.iter().zip(&self.volume_stiffness);
             nodes
                 .zip(self.volume_sources.from(0))
                 .map(|((pressure, stiffness), sources)| {
@@ -37,11 +39,21 @@ impl SoftBody {
                 })
                 .collect()
         });
-        let at_kpa = |node: u32| pressures_mpa[node as usize] / MPA_PER_KPA;
-        self.ends
-            .iter()
-            .map(|&[a, b]| 0.5 * (at_kpa(a) + at_kpa(b)))
-            .collect()
+        let at = |node: u32| pressures_mpa[node as usize];
+        let ends = self.ends.iter();
+        let mut nodal_mpa: Vec<f64> = ends.map(|&[a, b]| 0.5 * (at(a) + at(b))).collect();
+        if let Some(surface) = &self.bonded_surface {
+            let mut corners = Vec::new();
+            self.corner_pressures(solved_mpa, &mut corners);
+            surface.set_pressures(
+                &self.elements,
+                response,
+                displacements_mm,
+                &corners,
+                &mut nodal_mpa,
+            );
+        }
+        nodal_mpa.iter().map(|mpa| mpa / MPA_PER_KPA).collect()
     }
 
     /// Derivatives of the hydrostatic pressure at each node along a state's direction, kPa per unit
@@ -50,7 +62,8 @@ impl SoftBody {
     pub fn pressure_sensitivity_kpa(&self, state: &State, direction: usize) -> Vec<f64> {
         let rates = &state.sensitivities[direction];
         let [before, after] = rates.direction().sides().map(|(material, times)| {
-            let response = Response::new(material, 0.0, &state.history);
+            let history = state.history.combined(1.0, rates.history(), times);
+            let response = Response::new(material, 0.0, &history);
             let displacements_mm = moved(&state.displacements_mm, rates.displacements_mm(), times);
             let pressures_mpa = moved(&state.pressures_mpa, rates.pressures_mpa(), times);
             self.nodal_pressure_kpa(&response, &displacements_mm, &pressures_mpa)

@@ -8,7 +8,7 @@ use crate::{Element, SoftBodyError};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SolverSettings {
-    /// How displacements vary between nodes. Default composite.
+    /// How displacements vary between nodes. Default layered.
     pub element: Element,
     /// How linear systems are solved. Default two-level.
     pub linear: LinearSolver,

@@ -10,8 +10,9 @@ use twintac_softbody::{Element, Frame, Material, SoftBody, SolverSettings, State
 use super::rubbers::rubbers;
 use crate::rung::{Effort, Figure, Outcome};
 
-/// Both kinds of elements.
-pub(crate) const ELEMENTS: [(&str, Element); 2] = [
+/// All kinds of elements.
+pub(crate) const ELEMENTS: [(&str, Element); 3] = [
+    ("layered", Element::Layered),
     ("composite", Element::Composite),
     ("quadratic", Element::Quadratic),
 ];

@@ -1,88 +1,157 @@
-//! Shapes with rims on real-time meshes, against finer meshes.
+//! Shapes with rims on real-time meshes, against quadratic elements on finer meshes.
 
+use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use twintac_protocol::{PressPath, Waypoint, Zero};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::{FollowedFrame, Gel, SimulateSettings};
+use twintac_softbody::{Element, SolverSettings};
 
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
-/// Location of the presses, mm: off the middle, where gel meets the shell's wall.
+/// Location of the named presses, mm: off the middle, where gel meets the shell's wall.
 const PLACE_MM: [f64; 2] = [9.0, 3.0];
 const DEEPEST_MM: f64 = 2.0;
 /// Number of frames on the way down.
 const N_FRAMES: usize = 20;
 /// Depths at which forces and pressures are compared, mm.
 const DEPTHS_MM: [f64; 3] = [0.5, 1.0, 2.0];
-/// Nodes of a path's mesh without rims. The meshes with fine rims have about 7,000 and 90,000.
-const PATH_NODES: [usize; 2] = [4_600, 80_000];
-/// Edges of the finer mesh: over the gel's height, over the contact's radius, and over the radius
-/// of a rim.
-const FINER_EDGES: [f64; 3] = [12.0, 17.0, 3.0];
+/// Number and seed of the drawn presses. No constant of the program was chosen on them.
+const N_DRAWN: u64 = 10;
+const SEED: u64 = 12;
+/// Largest distance of a drawn press from the middle, as a fraction of the gel's half sides.
+const REACH: f64 = 0.6;
+/// Limits of force and pressure, %.
+const LIMITS: [f64; 2] = [3.0, 5.0];
+/// Nodes of a path's mesh without rims. With fine rims, it has about 7,000.
+const PATH_NODES: usize = 4_600;
 
-/// The shapes that are pressed.
-fn shapes() -> [(&'static str, Shape); 5] {
-    let (edge_radius_mm, height_mm) = (0.3, 10.0);
-    let block = |x_mm, y_mm| Shape::Box {
-        size_mm: [x_mm, y_mm, height_mm],
-        edge_radius_mm,
-    };
-    [
-        ("box", block(10.0, 8.0)),
-        ("bar", block(3.0, 12.0)),
-        (
-            "punch",
-            Shape::Cylinder {
-                radius_mm: 5.0,
-                height_mm,
-                edge_radius_mm,
-            },
-        ),
-        (
-            "ring",
-            Shape::Ring {
-                outer_radius_mm: 5.0,
-                inner_radius_mm: 3.0,
-                height_mm,
-                edge_radius_mm,
-            },
-        ),
-        (
-            "plate",
-            Shape::Box {
-                size_mm: [10.0, 8.0, 1.0],
-                edge_radius_mm,
-            },
-        ),
-    ]
+/// A mesh of the reference: edges over the gel's height, over the contact's radius and over the
+/// radius of a rim, and the largest number of nodes without rims.
+struct Finer([f64; 3], usize);
+
+const REFERENCE: Finer = Finer([12.0, 14.0, 3.0], 60_000);
+/// The reference's own error is estimated by this one.
+const OTHER_REFERENCE: Finer = Finer([15.0, 10.0, 2.0], 50_000);
+
+/// A press: its name, shape, location and angle about the vertical.
+struct RimPress {
+    name: String,
+    shape: Shape,
+    place_mm: [f64; 2],
+    yaw_rad: f64,
 }
 
-/// The frames of a press on the real-time or the finer mesh, and the number of nodes.
-fn press(sensor: &Arc<Sensor>, shape: &Shape, finer: bool) -> Result<(Vec<FollowedFrame>, usize)> {
-    let fine = SimulateSettings::fine();
-    let settings = if finer {
-        SimulateSettings {
-            edges_per_height: FINER_EDGES[0],
-            edges_per_contact_radius: FINER_EDGES[1],
-            edges_per_rounding: FINER_EDGES[2],
-            max_path_nodes: PATH_NODES[1],
-            ..fine
-        }
-    } else {
-        SimulateSettings {
-            max_path_nodes: PATH_NODES[0],
-            ..fine
-        }
+/// Five shapes at one place.
+fn named() -> Vec<RimPress> {
+    let (edge_radius_mm, height_mm) = (0.3, 10.0);
+    let block = |size_mm| Shape::Box {
+        size_mm,
+        edge_radius_mm,
     };
+    let punch = Shape::Cylinder {
+        radius_mm: 5.0,
+        height_mm,
+        edge_radius_mm,
+    };
+    let ring = Shape::Ring {
+        outer_radius_mm: 5.0,
+        inner_radius_mm: 3.0,
+        height_mm,
+        edge_radius_mm,
+    };
+    let shapes = [
+        ("box", block([10.0, 8.0, height_mm])),
+        ("bar", block([3.0, 12.0, height_mm])),
+        ("punch", punch),
+        ("ring", ring),
+        ("plate", block([10.0, 8.0, 1.0])),
+    ];
+    shapes
+        .map(|(name, shape)| RimPress {
+            name: name.to_owned(),
+            shape,
+            place_mm: PLACE_MM,
+            yaw_rad: 0.0,
+        })
+        .into()
+}
+
+/// The drawn press of an index: the same kinds of shapes in other sizes, anywhere on the gel.
+fn drawn(sensor: &Sensor, index: u64) -> RimPress {
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    random.set_stream(index);
+    let mut between = |low: f64, high: f64| random.random_range(low..high);
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    let place_mm = [REACH * between(low.x, high.x), REACH * between(low.y, high.y)];
+    let (yaw_rad, edge_radius_mm, height_mm) = (between(0.0, FRAC_PI_2), between(0.25, 0.5), 10.0);
+    let block = |size_mm| Shape::Box {
+        size_mm,
+        edge_radius_mm,
+    };
+    let shape = match index % 5 {
+        0 => block([between(5.0, 11.0), between(5.0, 11.0), height_mm]),
+        1 => block([between(2.0, 4.0), between(7.0, 13.0), height_mm]),
+        2 => Shape::Cylinder {
+            radius_mm: between(2.5, 5.5),
+            height_mm,
+            edge_radius_mm,
+        },
+        3 => {
+            let outer_radius_mm = between(4.0, 6.0);
+            Shape::Ring {
+                outer_radius_mm,
+                inner_radius_mm: outer_radius_mm - between(1.5, 2.5),
+                height_mm,
+                edge_radius_mm,
+            }
+        }
+        _ => block([between(5.0, 11.0), between(5.0, 11.0), between(1.0, 1.5)]),
+    };
+    RimPress {
+        name: format!("drawn press {index}"),
+        shape,
+        place_mm,
+        yaw_rad,
+    }
+}
+
+/// The frames of a press on the real-time mesh or a mesh of the reference, and the number of nodes.
+fn follow(
+    sensor: &Arc<Sensor>,
+    press: &RimPress,
+    finer: Option<&Finer>,
+) -> Result<(Vec<FollowedFrame>, usize)> {
+    let fine = SimulateSettings::fine();
+    let settings = match finer {
+        Some(Finer([height, contact_radius, rounding], max_path_nodes)) => SimulateSettings {
+            edges_per_height: *height,
+            edges_per_contact_radius: *contact_radius,
+            edges_per_rounding: *rounding,
+            max_path_nodes: *max_path_nodes,
+            solver: SolverSettings {
+                element: Element::Quadratic,
+                ..fine.solver
+            },
+            ..fine
+        },
+        None => SimulateSettings {
+            max_path_nodes: PATH_NODES,
+            ..fine
+        },
+    };
+    let [x_mm, y_mm] = press.place_mm;
     let at = |time_s: f64, z_mm: f64| Waypoint {
         time_s,
-        position_mm: DVec3::new(PLACE_MM[0], PLACE_MM[1], z_mm),
-        turn_rad: DVec3::ZERO,
+        position_mm: DVec3::new(x_mm, y_mm, z_mm),
+        turn_rad: DVec3::Z * press.yaw_rad,
         force_n: None,
     };
     let path = PressPath {
@@ -96,7 +165,7 @@ fn press(sensor: &Arc<Sensor>, shape: &Shape, finer: bool) -> Result<(Vec<Follow
         points: Vec::new(),
     };
     let gel = Gel::new(Arc::clone(sensor), settings);
-    let followed = gel.follow(shape, &path, &mut || ControlFlow::Continue(()))?;
+    let followed = gel.follow(&press.shape, &path, &mut || ControlFlow::Continue(()))?;
     Ok((followed.frames, followed.n_nodes))
 }
 
@@ -107,43 +176,80 @@ fn frame_at(frames: &[FollowedFrame], depth_mm: f64) -> Option<&FollowedFrame> {
         .find(|frame| (frame.depth_mm - depth_mm).abs() < 1e-6)
 }
 
+/// Differences in force, and in pressure at the ports relative to the largest, at each depth, %;
+/// NaN where a depth was not reached.
+fn differences(frames: &[FollowedFrame], reference: &[FollowedFrame]) -> [[f64; 2]; 3] {
+    DEPTHS_MM.map(|depth_mm| {
+        let found = frame_at(frames, depth_mm).zip(frame_at(reference, depth_mm));
+        found.map_or([f64::NAN; 2], |(frame, reference)| {
+            let largest_kpa = reference.pressure_kpa.values().copied().fold(0.0, f64::max);
+            let ports = frame.pressure_kpa.iter();
+            let differences = ports.map(|(port, kpa)| (kpa - reference.pressure_kpa[port]).abs());
+            [
+                100.0 * (frame.force_n.z / reference.force_n.z - 1.0),
+                100.0 * differences.fold(0.0, f64::max) / largest_kpa,
+            ]
+        })
+    })
+}
+
+const QUANTITIES: [&str; 2] = ["force", "pressure at the ports, of the largest"];
+
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let sensor = Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?;
     let sensor = Arc::new(sensor);
-    let shapes = shapes();
-    let shapes = &shapes[..effort.choose(1, shapes.len())];
+    let named = named();
+    let n_drawn = effort.choose(0, N_DRAWN);
     let (mut figures, mut series) = (Vec::new(), Vec::new());
     let mut n_nodes = [0; 2];
-    for (color, (name, shape)) in shapes.iter().enumerate() {
-        let (frames, n_coarse) = press(&sensor, shape, false)?;
-        let (finer, n_fine) = press(&sensor, shape, true)?;
+    for (color, press) in named[..effort.choose(1, named.len())].iter().enumerate() {
+        let (frames, n_coarse) = follow(&sensor, press, None)?;
+        let (finer, n_fine) = follow(&sensor, press, Some(&REFERENCE))?;
         n_nodes = [n_coarse, n_fine];
-        for depth_mm in DEPTHS_MM {
-            let found = frame_at(&frames, depth_mm).zip(frame_at(&finer, depth_mm));
-            let force_percent = found.map(|(frame, finer)| 100.0 * (frame.force_n.z / finer.force_n.z - 1.0));
-            let pressure_percent = found.map(|(frame, finer)| {
-                let largest_kpa = finer.pressure_kpa.values().copied().fold(0.0, f64::max);
-                let ports = frame.pressure_kpa.iter();
-                let differences = ports.map(|(port, kpa)| (kpa - finer.pressure_kpa[port]).abs());
-                100.0 * differences.fold(0.0, f64::max) / largest_kpa
-            });
-            let figure = |limit, what: &str, value: Option<f64>| {
-                let name = format!("{name}, {depth_mm} mm: {what}");
-                Figure::at_most(limit, name, value.unwrap_or(f64::NAN), "%")
-            };
-            figures.push(figure(3.0, "force", force_percent));
-            figures.push(figure(
-                5.0,
-                "pressure at the ports, of the largest",
-                pressure_percent,
-            ));
+        let differences = differences(&frames, &finer);
+        for (depth_mm, differences) in DEPTHS_MM.iter().zip(differences) {
+            for ((what, limit), difference) in QUANTITIES.iter().zip(LIMITS).zip(differences) {
+                let name = format!("{}, {depth_mm} mm: {what}", press.name);
+                figures.push(Figure::at_most(limit, name, difference, "%"));
+            }
         }
         let curve = |frames: &[FollowedFrame]| {
             let points = frames.iter().map(|frame| [frame.depth_mm, -frame.force_n.z]);
             points.collect()
         };
-        series.push(plots::line(*name, color, curve(&frames)));
-        series.push(plots::dashes(format!("{name}, finer"), color, curve(&finer)));
+        series.push(plots::line(&press.name, color, curve(&frames)));
+        series.push(plots::dashes(
+            format!("{}, reference", press.name),
+            color,
+            curve(&finer),
+        ));
+    }
+    let mut of_drawn = Vec::new();
+    for index in 0..n_drawn {
+        let press = drawn(&sensor, index);
+        let (frames, _) = follow(&sensor, &press, None).with_context(|| press.name.clone())?;
+        let (finer, _) = follow(&sensor, &press, Some(&REFERENCE)).with_context(|| press.name.clone())?;
+        of_drawn.push(differences(&frames, &finer));
+    }
+    for (at, depth_mm) in DEPTHS_MM.iter().enumerate().filter(|_| n_drawn > 0) {
+        for (quantity, what) in QUANTITIES.iter().enumerate() {
+            let mut sizes: Vec<f64> = of_drawn.iter().map(|press| press[at][quantity].abs()).collect();
+            sizes.sort_by(f64::total_cmp);
+            let figure = |which: &str| format!("{n_drawn} drawn presses, {depth_mm} mm: {what}, {which}");
+            figures.push(Figure::told(figure("the median"), sizes[sizes.len() / 2], "%"));
+            let worst = sizes[sizes.len() - 1];
+            figures.push(Figure::at_most(LIMITS[quantity], figure("the worst"), worst, "%"));
+        }
+    }
+    if effort == Effort::Full {
+        let punch = &named[2];
+        let [one, other] = [&REFERENCE, &OTHER_REFERENCE].map(|finer| follow(&sensor, punch, Some(finer)));
+        for (depth_mm, between) in DEPTHS_MM.iter().zip(differences(&other?.0, &one?.0)) {
+            for (what, difference) in QUANTITIES.iter().zip(between) {
+                let name = format!("punch, {depth_mm} mm: two references, {what}");
+                figures.push(Figure::told(name, difference, "%"));
+            }
+        }
     }
     let scene = plots::lines(
         "Force of shapes with rims",
@@ -154,10 +260,12 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     Ok(Outcome {
         done: format!(
             "Bodies with rims of 0.3 mm are pressed at ({}, {}) mm in {N_FRAMES} frames to {DEEPEST_MM} mm, \
-             without friction: once on a mesh of {} nodes, as it is pressed in real time, and once on a \
-             mesh of {} nodes. The finer mesh is not exact either. Contact and meshes have constants that were \
-             chosen on these very presses, so that the figures say how well they fit, not how well other \
-             shapes, places and depths are met.\n",
+             without friction: on a mesh of {} nodes, as it is pressed in real time, and with quadratic \
+             elements on a mesh of {} nodes, the reference. The difference between two references, on \
+             meshes that are fine in different places, shows its own error. Contact and meshes have \
+             constants that were chosen on these very presses. Another {N_DRAWN} presses are drawn (seed \
+             {SEED}): the same kinds of shapes in other sizes, with rims of 0.25 to 0.5 mm, turned by any \
+             angle, anywhere within {REACH} of the gel's half sides. No constant was chosen on them.\n",
             PLACE_MM[0], PLACE_MM[1], n_nodes[0], n_nodes[1]
         ),
         figures,

@@ -9,7 +9,15 @@ use super::table::{NODES, QuadraturePoint, Table, ends};
 /// The table of a coarse tetrahedron with these ten nodes, which is cut into these eight
 /// tetrahedra.
 pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8]) -> Table {
-    Table::new(children.iter().map(|child| point(nodes, child)).collect())
+    Table::new(points(nodes, children).collect())
+}
+
+/// The quadrature points of that table.
+pub(super) fn points(
+    nodes: &[u32; NODES],
+    children: &[[u32; 4]; 8],
+) -> impl Iterator<Item = QuadraturePoint> {
+    children.iter().map(|child| point(nodes, child))
 }
 
 fn point(nodes: &[u32; NODES], child: &[u32; 4]) -> QuadraturePoint {

@@ -1,29 +1,45 @@
 //! The elements of a body, in packs of eight tetrahedra.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::deformation::{self, Vector};
 use super::table::{NODES, Table};
-use super::{composite, quadratic};
+use super::{composite, layered, quadratic};
 use crate::wide::{LANES, Wide};
 
 /// How displacements vary between the nodes of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Element {
-    /// Linear on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
+    /// Composite, and mostly quadratic in the tetrahedra with bonded nodes, where stresses change
+    /// fastest: almost as fast as composite, and about as accurate as quadratic.
     #[default]
+    Layered,
+    /// Linear on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
     Composite,
-    /// Quadratic on each tetrahedron: more accurate with the same nodes; used as a reference.
+    /// Quadratic on each tetrahedron: more accurate with the same nodes, but slow, and it may fold
+    /// under deep presses; used as a reference.
     Quadratic,
 }
 
 impl Element {
-    fn table(self, nodes: &[u32; NODES], children: &[[u32; 4]; 8]) -> Table {
+    fn table(self, nodes: &[u32; NODES], children: &[[u32; 4]; 8], is_bonded: [bool; 4]) -> Table {
         match self {
-            Self::Composite => composite::table(nodes, children),
+            Self::Layered if is_bonded.contains(&true) => layered::table(nodes, children, is_bonded),
+            Self::Layered | Self::Composite => composite::table(nodes, children),
             Self::Quadratic => quadratic::table(),
+        }
+    }
+
+    /// Part of the composite element in the energy at bonded nodes.
+    pub(crate) fn flat_share(self) -> f64 {
+        match self {
+            Self::Layered => layered::FLAT_SHARE,
+            Self::Composite => 1.0,
+            Self::Quadratic => 0.0,
         }
     }
 }
@@ -61,10 +77,11 @@ pub(crate) enum Side {
 
 impl Elements {
     /// `parents` are the ten nodes of each coarse tetrahedron, `children` the eight tetrahedra that
-    /// it is cut into, and `sides` the half of the body that it is in.
+    /// it is cut into, and `sides` the half of the body that it is in; `bonded` nodes are sorted.
     pub(crate) fn new(
         element: Element,
         nodes_mm: &[DVec3],
+        bonded: &[u32],
         parents: &[[u32; NODES]],
         children: &[[[u32; 4]; 8]],
         sides: &[Side],
@@ -79,7 +96,8 @@ impl Elements {
             .iter()
             .zip(children)
             .map(|(nodes, children)| {
-                let table = element.table(nodes, children);
+                let is_bonded = [0, 1, 2, 3].map(|corner| bonded.binary_search(&nodes[corner]).is_ok());
+                let table = element.table(nodes, children, is_bonded);
                 let known = elements.tables.iter().position(|other| other.same_as(&table));
                 known.unwrap_or_else(|| {
                     elements.tables.push(table);
@@ -123,6 +141,25 @@ impl Elements {
     /// The table of the tetrahedron in a slot.
     pub(crate) fn table_of(&self, slot: u32) -> &Table {
         &self.tables[self.packs[slot as usize / LANES].table]
+    }
+
+    /// The ten nodes of the tetrahedron in a slot.
+    pub(crate) fn nodes_of(&self, slot: usize) -> impl Iterator<Item = u32> {
+        let pack = &self.packs[slot / LANES];
+        pack.nodes.iter().map(move |lanes| lanes[slot % LANES])
+    }
+
+    /// The packs with one of these nodes, as ranges.
+    pub(crate) fn packs_with(&self, is_one: &dyn Fn(u32) -> bool) -> Vec<Range<usize>> {
+        let has_one = |pack: &Pack| pack.nodes.as_flattened().iter().any(|&node| is_one(node));
+        let mut ranges: Vec<Range<usize>> = Vec::new();
+        for (index, _) in self.packs.iter().enumerate().filter(|(_, pack)| has_one(pack)) {
+            match ranges.last_mut() {
+                Some(range) if range.end == index => range.end += 1,
+                _ => ranges.push(index..index + 1),
+            }
+        }
+        ranges
     }
 
     pub(crate) fn n_slots(&self) -> usize {

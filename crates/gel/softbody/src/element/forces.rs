@@ -1,6 +1,8 @@
 //! Volume changes, energy and nodal forces. The force at node `a` is `Σ V (P - p J F⁻ᵀ) G_a` over
 //! the quadrature points, with the stress `P` of the law and the pressure `p`.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use pulp::NullaryFnOnce;
 
@@ -72,6 +74,28 @@ impl Elements {
             || run(packs_b, changes_b, least_b),
         );
         out.least.iter().copied().fold(f64::INFINITY, least)
+    }
+
+    /// Forces of the slots of a range of packs, N, at the given displacements and pressures of all
+    /// slots' corners.
+    pub(crate) fn forces_of(
+        &self,
+        packs: Range<usize>,
+        response: &Response,
+        displacements_mm: &[DVec3],
+        corner_pressures_mpa: &[[f64; 4]],
+    ) -> Vec<[DVec3; NODES]> {
+        let mut forces_n = vec![[DVec3::ZERO; NODES]; packs.len() * LANES];
+        dispatch(ForceKernel {
+            tables: &self.tables,
+            packs: &self.packs[packs.clone()],
+            displacements_mm,
+            corners: &corner_pressures_mpa[packs.start * LANES..packs.end * LANES],
+            response,
+            forces_n: &mut forces_n,
+            energies: &mut vec![0.0; packs.len()],
+        });
+        forces_n
     }
 
     /// Forces and energies of the change of shape, at the given displacements and pressures of the

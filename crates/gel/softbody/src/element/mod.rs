@@ -16,6 +16,7 @@ mod deformation;
 mod elements;
 mod forces;
 mod law;
+mod layered;
 mod principal;
 mod quadratic;
 mod response;

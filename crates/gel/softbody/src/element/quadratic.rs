@@ -10,7 +10,12 @@ const NEAR: f64 = 0.585_410_196_624_968_5;
 
 /// The table, which is the same for all coarse tetrahedra.
 pub(super) fn table() -> Table {
-    Table::new((0..4).map(point).collect())
+    Table::new(points().collect())
+}
+
+/// The quadrature points of that table.
+pub(super) fn points() -> impl Iterator<Item = QuadraturePoint> {
+    (0..4).map(point)
 }
 
 fn point(nearest: usize) -> QuadraturePoint {

@@ -5,7 +5,7 @@
 pub(crate) const NODES: usize = 10;
 
 /// Largest number of quadrature points of an element.
-pub(super) const MAX_POINTS: usize = 8;
+pub(super) const MAX_POINTS: usize = 16;
 
 /// The two corners of the edge of each midpoint. Midpoints are numbered after the four corners.
 pub(crate) const EDGES: [[u8; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];

@@ -35,6 +35,7 @@ fn one(element: Element) -> (Vec<DVec3>, Elements) {
     let elements = Elements::new(
         element,
         &refined.mesh.nodes_mm,
+        &[0],
         &[parent],
         &[children],
         &[Side::First],
@@ -176,9 +177,11 @@ proptest! {
     fn forces_and_tangent_are_the_slopes_of_the_energy(
         moves in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
         before in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
-        is_quadratic in any::<bool>(),
+        element in prop_oneof![
+            Just(Element::Layered), Just(Element::Composite), Just(Element::Quadratic)
+        ],
     ) {
-        let (_, elements) = one(if is_quadratic { Element::Quadratic } else { Element::Composite });
+        let (_, elements) = one(element);
         let vectors = |moves: &[[f64; 3]]| moves.iter().map(|u| DVec3::from_array(*u)).collect::<Vec<_>>();
         let (u, before) = (vectors(&moves), vectors(&before));
         let term = PronyTerm { weight: 0.4, time_s: 0.5 };

@@ -119,6 +119,10 @@ impl Sensitivity {
     }
 
     /// Derivatives of the pressures, MPa per unit of the parameter; `[n_coarse]`.
+    pub(crate) fn history(&self) -> &History {
+        &self.history
+    }
+
     pub(crate) fn pressures_mpa(&self) -> &[f64] {
         &self.pressures_mpa
     }

@@ -13,7 +13,7 @@ pub(super) const DIFFERENCE_MM: f64 = 1e-8;
 
 /// A derivative is accurate enough when the 2-norm of the forces that it leaves unbalanced is below
 /// this fraction of those that the parameter unbalances.
-pub(super) const ACCURACY: f64 = 1e-5;
+pub(super) const ACCURACY: f64 = 1e-6;
 
 /// Accuracy of the linear system in single precision, like that of a Newton direction.
 const FORCING: f64 = 0.03;
