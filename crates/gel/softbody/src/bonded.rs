@@ -108,7 +108,8 @@ impl BondedSurface {
     }
 
     /// Replaces the pressures of these nodes, MPa, given those of the slots' corners. It does
-    /// nothing while the surface is deformed.
+    /// nothing while the surface is deformed, and nothing in a body that was never moved, whose
+    /// pressures are exactly zero.
     pub(crate) fn set_pressures(
         &self,
         elements: &Elements,
@@ -117,7 +118,8 @@ impl BondedSurface {
         corner_pressures_mpa: &[[f64; 4]],
         nodal_mpa: &mut [f64],
     ) {
-        if !self.keeps_its_shape(displacements_mm) {
+        let is_at_rest = displacements_mm.iter().all(|moved| *moved == DVec3::ZERO);
+        if is_at_rest || !self.keeps_its_shape(displacements_mm) {
             return;
         }
         let normals = self.normals(displacements_mm);
