@@ -51,7 +51,8 @@ pub struct SoftBody {
     /// Sum of `μ V |G|²` over the quadrature points around each node, N/mm: an estimate of the
     /// node's own stiffness.
     pub(crate) node_stiffness: Vec<f64>,
-    /// Where pressures are corrected; `None` for elements that do not gain by it.
+    /// Where pressures follow from the forces that hold the body; `None` for composite elements,
+    /// which do not gain by it, and where bonded nodes span no face.
     pub(crate) bonded_surface: Option<BondedSurface>,
     /// Cube root of the volume, mm.
     pub(crate) size_mm: f64,

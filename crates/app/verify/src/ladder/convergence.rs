@@ -93,8 +93,8 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
              no shell), on meshes of {} to {} nodes with equal cells. Errors are differences from the \
              result of the 10-node tetrahedron on the finest mesh ({n_reference} nodes). The observed order \
              is the slope of a line through the logarithms of all errors over those of the cell size. The \
-             force on a coarse mesh is right by chance where nodes come into contact at the right depth. Below \
-             1 %, errors are no larger than that of the reference itself.",
+             force on a coarse mesh is right by chance where nodes come into contact at the right depth. The \
+             reference has an error of its own, so that errors below about 1 % show no order.",
             all[0].1,
             all[all.len() - 1].1
         ),

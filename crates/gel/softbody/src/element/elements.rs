@@ -15,7 +15,7 @@ use crate::wide::{LANES, Wide};
 #[serde(rename_all = "kebab-case")]
 pub enum Element {
     /// Composite, and mostly quadratic in the tetrahedra with bonded nodes, where stresses change
-    /// fastest: almost as fast as composite, and about as accurate as quadratic.
+    /// fastest: more accurate pressures there than composite, and a little slower.
     #[default]
     Layered,
     /// Linear on each of the eight tetrahedra that a coarse one is cut into: fast and robust.

@@ -2,9 +2,8 @@
 //! at a bonded corner.
 //!
 //! Stresses change fastest in the layer of gel that is bonded, because it is sheared there but
-//! cannot move. Linear displacements carry 4 to 5 % too much pressure to the middle of a press
-//! through that layer, on a mesh that is pressed in real time, and the excess falls only with the
-//! first power of the edge length.
+//! cannot move. With linear displacements in this layer, pressures at the bonded surface are several
+//! percent off on a mesh that is pressed in real time (`tests/pressed_gel.rs` compares both).
 //!
 //! Displacements are those that are linear between the corners, and for each edge the deviation of
 //! its midpoint times a function. For a composite element, that function is linear in each of the
@@ -18,7 +17,8 @@
 use super::table::{EDGES, NODES, QuadraturePoint, Table, ends};
 use super::{composite, quadratic};
 
-/// Part of the composite element in the energy.
+/// Part of the composite element in the energy. Without it, deep random presses end inside out
+/// (`cargo xtask verify robustness`).
 pub(crate) const FLAT_SHARE: f64 = 0.15;
 
 /// Distance of a quadrature point from the middle of the tetrahedron, over that of the middle of
