@@ -2,8 +2,9 @@
 //! at a bonded corner.
 //!
 //! Stresses change fastest in the layer of gel that is bonded, because it is sheared there but
-//! cannot move. With linear displacements in this layer, pressures at the bonded surface are several
-//! percent off on a mesh that is pressed in real time (`tests/pressed_gel.rs` compares both).
+//! cannot move. With linear displacements in this layer, pressures at the bonded surface are
+//! several percent off on a mesh that is pressed in real time (`tests/pressed_gel.rs` compares
+//! both).
 //!
 //! Displacements are those that are linear between the corners, and for each edge the deviation of
 //! its midpoint times a function. For a composite element, that function is linear in each of the
