@@ -11,8 +11,9 @@ use super::rubbers::rubbers;
 use crate::rung::{Effort, Figure, Outcome};
 
 /// All kinds of elements.
-pub(crate) const ELEMENTS: [(&str, Element); 3] = [
+pub(crate) const ELEMENTS: [(&str, Element); 4] = [
     ("layered", Element::Layered),
+    ("blended", Element::Blended),
     ("composite", Element::Composite),
     ("quadratic", Element::Quadratic),
 ];
