@@ -12,6 +12,7 @@ use crate::element::Elements;
 use crate::linear::coarse::{CoarseSystem, Factors};
 use crate::linear::direct::DirectSystem;
 use crate::linear::matrix::Pattern;
+use crate::parallel::join_halves;
 use crate::{MPA_PER_KPA, Material, SolverSettings};
 
 /// Fraction of the shear modulus that, as a stress over the body's size, gives the smallest load to
@@ -149,9 +150,16 @@ impl SoftBody {
 
     /// The pressures of the corners of each slot, MPa.
     pub(crate) fn corner_pressures(&self, pressures_mpa: &[f64], corners: &mut Vec<[f64; 4]>) {
-        corners.clear();
-        let at = |node: u32| pressures_mpa[node as usize];
-        corners.extend(self.slot_corners.iter().map(|corners| corners.map(at)));
+        corners.resize(self.slot_corners.len(), [0.0; 4]);
+        let half = corners.len() / 2;
+        let (first, second) = corners.split_at_mut(half);
+        let of_corners = self.slot_corners.split_at(half);
+        let gather = |corners: &mut [[f64; 4]], nodes: &[[u32; 4]]| {
+            for (corners, nodes) in corners.iter_mut().zip(nodes) {
+                *corners = nodes.map(|node| pressures_mpa[node as usize]);
+            }
+        };
+        join_halves(|| gather(first, of_corners.0), || gather(second, of_corners.1));
     }
 
     /// Shear modulus times volume, N mm.

@@ -5,9 +5,9 @@ use twintac_shape::Pose;
 
 use super::drive::Drive;
 use crate::body::SoftBody;
-use crate::contact::{Contact, RigidBody};
+use crate::contact::{Contact, RigidBody, for_each_contact};
 use crate::element::{self, Response};
-use crate::newton::{Equilibrium, Failure, Step, Unknowns};
+use crate::newton::{Equilibrium, Failure, Start, Step, Unknowns};
 use crate::sensitivity;
 use crate::state::State;
 
@@ -64,12 +64,12 @@ impl SoftBody {
         }
         let iterations_before = *iterations;
         buffers.passed.clear();
-        let mut solved = buffers.solve(self, &step, &mut x, iterations);
+        let mut solved = buffers.solve(self, &step, &mut x, Start::Anew, iterations);
         if is_ahead && *iterations == iterations_before && matches!(solved, Err(Failure::Inverted)) {
             // At the extrapolated displacements a tetrahedron is inverted.
             x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
             drive.hold(self, part[1], x.displacements_mm);
-            solved = buffers.solve(self, &step, &mut x, iterations);
+            solved = buffers.solve(self, &step, &mut x, Start::Anew, iterations);
         }
         // After a long motion, other triangles are at the rims of the shape than at the start of
         // the step. If the points were not chosen again, the force would continue to change while
@@ -78,7 +78,7 @@ impl SoftBody {
             if !solved.is_ok_and(|equilibrium| equilibrium.is_settled) || !self.look_again(&shapes, &mut x) {
                 break;
             }
-            solved = buffers.solve(self, &step, &mut x, iterations);
+            solved = buffers.solve(self, &step, &mut x, Start::Again, iterations);
         }
         let solved = solved.and_then(|equilibrium| {
             self.check_sides([&before, &shapes], &x, &buffers.old.displacements_mm)?;
@@ -136,7 +136,7 @@ impl SoftBody {
         } = state;
         contacts[..n_parts].iter_mut().for_each(Contact::forget_distances);
         let at_mm = |node: u32| self.mesh().nodes_mm[node as usize] + displacements_mm[node as usize];
-        for (index, (shape, contact)) in shapes.iter().zip(contacts.iter_mut()).enumerate() {
+        for_each_contact(shapes, contacts, |index, shape, contact| {
             // Only obstacles are checked for distance, because the indenter moves.
             if index >= n_parts {
                 contact.look_for_room(shape, &self.boundary, &at_mm);
@@ -144,7 +144,7 @@ impl SoftBody {
             } else {
                 contact.look_inside(shape, &self.boundary, &at_mm);
             }
-        }
+        });
         let old = &mut workspace.buffers(self).old;
         old.displacements_mm.clone_from(displacements_mm);
         old.pressures_mpa.clone_from(pressures_mpa);
@@ -163,12 +163,12 @@ impl SoftBody {
 
     /// Chooses the points at which contact is evaluated again; returns whether they have changed.
     fn look_again(&self, shapes: &[RigidBody], x: &mut Unknowns) -> bool {
-        let displacements_mm: &[DVec3] = x.displacements_mm;
+        let displacements_mm = &*x.displacements_mm;
         let at_mm = |node: u32| self.mesh.nodes_mm[node as usize] + displacements_mm[node as usize];
-        let contacts = shapes.iter().zip(x.contacts.iter_mut());
-        contacts.fold(false, |any, (shape, contact)| {
-            contact.look_again(shape, &self.boundary, &at_mm) || any
-        })
+        let are_others = for_each_contact(shapes, x.contacts, |_, shape, contact| {
+            contact.look_again(shape, &self.boundary, &at_mm)
+        });
+        are_others.contains(&true)
     }
 
     /// Fails if the indenter and the body have passed through each other.

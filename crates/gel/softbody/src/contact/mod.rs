@@ -11,6 +11,7 @@
 //! be found. Walls that meet should be given as separate shapes: a node in the corner then touches
 //! two.
 
+mod all;
 mod away;
 mod bend;
 mod boundary;
@@ -24,6 +25,7 @@ mod state;
 mod touch;
 mod triangle;
 
+pub(crate) use all::for_each_contact;
 pub(crate) use boundary::Boundary;
 pub(crate) use clash::clash;
 pub(crate) use pierce::PassedThrough;

@@ -41,7 +41,14 @@ pub(crate) struct Matrix {
     /// Rows of `B √D`.
     pub(super) slopes: Vec<Vector>,
     /// Stiffness of contact and damping, which is added to the diagonal; `[n_free]`.
-    pub(crate) extra: Vec<Block>,
+    extra: Vec<Block>,
+    /// The damping in it, in units of each node's own stiffness.
+    damping: f64,
+    /// Rows to whose diagonal contact has added, and those of the previous contact.
+    pressed: Vec<u32>,
+    released: Vec<u32>,
+    /// Whether the whole diagonal has changed since it was last completed.
+    is_new: bool,
     /// Blocks that contact has added to, and their previous values.
     covered: Vec<(u32, Block)>,
     /// The complete diagonal of `A`; `[n_free]`.
@@ -162,6 +169,10 @@ impl Pattern {
             blocks: vec![Block::default(); self.columns.len()],
             slopes: vec![Vector::ZERO; self.slope_columns.len()],
             extra: blocks(),
+            damping: 0.0,
+            pressed: Vec::new(),
+            released: Vec::new(),
+            is_new: true,
             covered: Vec::new(),
             own: blocks(),
             inverse: blocks(),
@@ -187,6 +198,7 @@ impl Matrix {
     /// Clears the matrix, and returns the sinks of the two halves.
     pub(crate) fn halves<'a>(&'a mut self, pattern: &'a Pattern) -> [FineSink<'a>; 2] {
         self.covered.clear();
+        self.is_new = true;
         let first_row = pattern.halves.first;
         let first_block = pattern.rows[first_row] as usize;
         let first_slope = pattern.slope_rows[first_row] as usize;
@@ -238,8 +250,20 @@ impl Matrix {
         }
     }
 
-    /// Restores the blocks between nodes that contact has added to.
-    pub(crate) fn take_back(&mut self) {
+    /// Takes the stiffness of contact away, and damps each node by a multiple of its own stiffness.
+    pub(crate) fn take_back(&mut self, damping: f64, node_stiffness: &[f64]) {
+        let damped = |stiffness: &f64| Block::diagonal((damping * stiffness) as f32);
+        if damping == self.damping {
+            for &row in &self.pressed {
+                self.extra[row as usize] = damped(&node_stiffness[row as usize]);
+            }
+        } else {
+            self.damping = damping;
+            self.is_new = true;
+            let rows = self.extra.iter_mut().zip(node_stiffness);
+            rows.for_each(|(extra, stiffness)| *extra = damped(stiffness));
+        }
+        self.released.append(&mut self.pressed);
         for (index, block) in self.covered.drain(..).rev() {
             self.blocks[index as usize] = block;
         }
@@ -257,6 +281,7 @@ impl Matrix {
         while let Some((node, part)) = parts.next() {
             let part = part as f32;
             self.extra[node as usize].add(&Block::from_mat3(&(*stiffness * (part * part))));
+            self.pressed.push(node);
             for (other, other_part) in parts.clone() {
                 let index = find(&pattern.rows, &pattern.columns, node.max(other), node.min(other));
                 let block = &mut self.blocks[index as usize];
@@ -269,25 +294,34 @@ impl Matrix {
 
     /// Completes the diagonal with the present extra stiffness.
     pub(crate) fn complete(&mut self, pattern: &Pattern) {
-        let half = pattern.halves.free / 2;
         let (diagonal, slopes, extra) = (&self.diagonal, &self.slopes, &self.extra);
-        let complete = |first: usize, own: &mut [Block], inverse: &mut [Block]| {
-            for (row, (own, inverse)) in (first..).zip(own.iter_mut().zip(inverse)) {
-                *own = diagonal[row];
-                own.add(&extra[row]);
-                let mut whole = *own;
-                for at in pattern.slopes_of(row) {
-                    whole.add_square(&slopes[at]);
-                }
-                *inverse = whole.inverse();
+        let complete = |row: usize, own: &mut Block, inverse: &mut Block| {
+            *own = diagonal[row];
+            own.add(&extra[row]);
+            let mut whole = *own;
+            for at in pattern.slopes_of(row) {
+                whole.add_square(&slopes[at]);
             }
+            *inverse = whole.inverse();
         };
-        let own = self.own.split_at_mut(half);
-        let inverse = self.inverse.split_at_mut(half);
-        join_halves(
-            || complete(0, own.0, inverse.0),
-            || complete(half, own.1, inverse.1),
-        );
+        if self.is_new {
+            let half = pattern.halves.free / 2;
+            let rows = |first: usize, own: &mut [Block], inverse: &mut [Block]| {
+                for (row, (own, inverse)) in (first..).zip(own.iter_mut().zip(inverse)) {
+                    complete(row, own, inverse);
+                }
+            };
+            let own = self.own.split_at_mut(half);
+            let inverse = self.inverse.split_at_mut(half);
+            join_halves(|| rows(0, own.0, inverse.0), || rows(half, own.1, inverse.1));
+        } else {
+            for row in self.released.iter().chain(&self.pressed) {
+                let row = *row as usize;
+                complete(row, &mut self.own[row], &mut self.inverse[row]);
+            }
+        }
+        self.released.clear();
+        self.is_new = false;
     }
 }
 

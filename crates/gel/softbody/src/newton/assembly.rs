@@ -8,7 +8,7 @@ use crate::body::SoftBody;
 use crate::clock::Instant;
 use crate::contact::ContactPoint;
 use crate::element::{CoarseSink, Response, Sink};
-use crate::linear::block::{Block, Vector};
+use crate::linear::block::Vector;
 use crate::linear::coarse::Factors;
 use crate::relaxation::History;
 use crate::wide::LANES;
@@ -102,10 +102,7 @@ impl Buffers {
 
     /// Adds contact and damping to the matrix.
     pub(crate) fn add_contact(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
-        for (extra, stiffness) in self.matrix.extra.iter_mut().zip(&body.node_stiffness) {
-            *extra = Block::diagonal((self.damping * stiffness) as f32);
-        }
-        self.matrix.take_back();
+        self.matrix.take_back(self.damping, &body.node_stiffness);
         for_each_touch(body, step, x, &mut |_, point, stiffness| {
             self.matrix
                 .add_at(&body.pattern, point.parts(), &stiffness.as_mat3());

@@ -6,12 +6,19 @@ use super::step::{Evaluation, Step, Unknowns};
 use super::workspace::Buffers;
 use crate::body::SoftBody;
 use crate::clock::Instant;
+use crate::contact::for_each_contact;
 use crate::parallel::join_halves;
 
 impl Buffers {
     /// Computes pressures, contact, the energy and its gradient; `None` if a tetrahedron is
     /// inverted and the material is not defined for that.
     pub(crate) fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
+        self.evaluate_elements(body, step, x)?;
+        self.evaluate_again(body, step, x)
+    }
+
+    /// Computes pressures, and the energy and the forces of the elements.
+    fn evaluate_elements(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<()> {
         let started = Instant::now();
         let mut evaluation = Evaluation {
             smallest_volume_ratio: body.elements.volumes(x.displacements_mm, &mut self.volumes),
@@ -21,12 +28,23 @@ impl Buffers {
             return None;
         }
         let changes = self.volumes.changes_mm3.as_flattened();
-        let pressures = x.pressures_mpa.iter_mut().zip(&body.volume_stiffness);
-        for ((pressure, stiffness), sources) in pressures.zip(body.volume_sources.from(0)) {
-            let change: f64 = sources.iter().map(|&source| changes[source as usize]).sum();
-            *pressure = -stiffness * change;
-            evaluation.energy += 0.5 * stiffness * change * change;
-        }
+        let half = x.pressures_mpa.len() / 2;
+        let (first, second) = x.pressures_mpa.split_at_mut(half);
+        let squeeze = |first: usize, pressures_mpa: &mut [f64]| -> f64 {
+            let stiffness = &body.volume_stiffness[first..];
+            let nodes = pressures_mpa
+                .iter_mut()
+                .zip(stiffness)
+                .zip(body.volume_sources.from(first));
+            let energies = nodes.map(|((pressure, stiffness), sources)| {
+                let change: f64 = sources.iter().map(|&source| changes[source as usize]).sum();
+                *pressure = -stiffness * change;
+                0.5 * stiffness * change * change
+            });
+            energies.sum()
+        };
+        let energies = join_halves(|| squeeze(0, first), || squeeze(half, second));
+        evaluation.energy += energies.0 + energies.1;
 
         body.corner_pressures(x.pressures_mpa, &mut self.corners);
         body.elements.forces(
@@ -36,6 +54,21 @@ impl Buffers {
             &mut self.forces,
         );
         evaluation.energy += self.forces.energies.iter().sum::<f64>();
+        self.of_elements = evaluation;
+        self.cost.forces_s += started.elapsed().as_secs_f64();
+        Some(())
+    }
+
+    /// Like [`Self::evaluate`], at the displacements of the last evaluation, where only contacts
+    /// have changed since.
+    pub(super) fn evaluate_again(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &mut Unknowns,
+    ) -> Option<Evaluation> {
+        let started = Instant::now();
+        let mut evaluation = self.of_elements;
         let forces = self.forces.forces_n.as_flattened();
         let half = self.gradient_n.len() / 2;
         let (first, second) = self.gradient_n.split_at_mut(half);
@@ -54,13 +87,21 @@ impl Buffers {
         self.boundary_mm.clear();
         self.boundary_mm
             .extend(body.boundary_mm(x.displacements_mm).map(|(_, at_mm)| at_mm));
-        for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
+        let (boundary_mm, displacements_mm) = (&self.boundary_mm, &*x.displacements_mm);
+        let energies = for_each_contact(step.shapes, x.contacts, |_, shape, contact| {
             contact.check_room(shape, &body.boundary, [&before_mm, &now_mm]);
             // The nodes of the boundary are the first points.
-            for (index, (point, touch)) in contact.each_mut(&body.boundary).enumerate() {
-                let of_node_mm = self.boundary_mm.get(index).copied();
-                let at_mm = of_node_mm.unwrap_or_else(|| body.point_mm(point, x.displacements_mm));
-                evaluation.energy += shape.touch(touch, point, at_mm);
+            let points = contact.each_mut(&body.boundary).enumerate();
+            let energies = points.map(|(index, (point, touch))| {
+                let of_node_mm = boundary_mm.get(index).copied();
+                let at_mm = of_node_mm.unwrap_or_else(|| body.point_mm(point, displacements_mm));
+                shape.touch(touch, point, at_mm)
+            });
+            energies.sum::<f64>()
+        });
+        evaluation.energy += energies.iter().sum::<f64>();
+        for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
+            for (point, touch) in contact.each(&body.boundary) {
                 if touch.force_n > 0.0 {
                     for (node, part) in point.parts() {
                         self.gradient_n[node as usize] -= touch.normal * (part * touch.force_n);

@@ -10,5 +10,5 @@ mod step;
 mod workspace;
 
 pub(crate) use assembly::rest_factors;
-pub(crate) use step::{Equilibrium, Failure, Step, Unknowns};
+pub(crate) use step::{Equilibrium, Failure, Start, Step, Unknowns};
 pub(crate) use workspace::{Buffers, Workspace};

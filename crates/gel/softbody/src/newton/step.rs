@@ -18,6 +18,15 @@ pub(crate) struct Unknowns<'a> {
     pub(crate) contacts: &'a mut Vec<Contact>,
 }
 
+/// Where an iteration starts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// With a new step.
+    Anew,
+    /// At the end of an iteration for the same step, with other contact points.
+    Again,
+}
+
 /// Unknowns before a step.
 #[derive(Default)]
 pub(crate) struct Beginning {

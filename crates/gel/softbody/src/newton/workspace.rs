@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::step::{Beginning, Passed, Unknowns};
+use super::step::{Beginning, Evaluation, Passed, Unknowns};
 use crate::body::SoftBody;
 use crate::clock::Instant;
 use crate::element::{CoarseTangent, Forces, Volumes};
@@ -36,6 +36,8 @@ pub(crate) struct Buffers {
     /// `[n_slots]`
     pub(super) coarse_tangents: Vec<CoarseTangent>,
     pub(super) forces: Forces,
+    /// Energy and volume ratio of the elements at the last evaluation.
+    pub(super) of_elements: Evaluation,
     pub(super) volumes: Volumes,
     /// Pressures of the corners of each slot, MPa.
     pub(super) corners: Vec<[f64; 4]>,
@@ -80,6 +82,7 @@ impl Workspace {
                 gradients: ConjugateGradients::new(&body.pattern),
                 coarse_tangents: vec![CoarseTangent::default(); body.elements.n_slots()],
                 forces: Forces::default(),
+                of_elements: Evaluation::default(),
                 volumes: Volumes::default(),
                 corners: Vec::new(),
                 damping: 0.0,
