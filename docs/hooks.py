@@ -6,10 +6,14 @@ A page has a line for each part:
 - `<!-- commands -->`: the help of the installed program
 - `<!-- file: PATH -->`: a file of the checkout
 - `<!-- fields: PATH TYPE -->`: the fields of a Rust type, with the documentation of its source
+
+Where `cargo xtask web` has made the page on which a gel is pressed, it is part of the book, and the
+picture of it on the first page has a button that starts it.
 """
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -22,6 +26,19 @@ from latex2mathml.converter import convert
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
+PRESSED = ROOT / "target" / "web" / "twintac.html"
+START = """<div class="pressed">PICTURE
+<button type="button" class="md-button md-button--primary">Press it here</button></div>
+<script>
+document.querySelector(".pressed button").addEventListener("click", ({ target }) => {
+  const frame = document.createElement("iframe");
+  frame.src = "twintac.html";
+  frame.title = "A gel to press";
+  target.parentElement.replaceChildren(frame);
+  frame.focus();
+});
+</script>
+"""
 
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
@@ -32,6 +49,22 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     text = re.sub(r"\$\$(.+?)\$\$", lambda found: convert(found[1].strip(), display="block"), text, flags=re.S)
     folder = (DOCS / page.file.src_uri).parent
     return re.sub(r"\]\(([^):#]+)(#[^)]*)?\)", lambda found: link(found, folder, config["repo_url"]), text)
+
+
+def on_page_content(html: str, page: Any, config: Any, files: Any) -> str:
+    """The HTML of a page. On the first one, the picture of the gel becomes the gel at a click."""
+    if page.file.src_uri != "index.md" or not PRESSED.exists():
+        return html
+    start, found = re.subn(r'<p>(<img [^>]*src="browser\.png"[^>]*>)</p>', lambda found: START.replace("PICTURE", found[1]), html)
+    if found != 1:
+        raise ValueError("docs/index.md has no picture browser.png of its own, where the gel starts")
+    return start
+
+
+def on_post_build(config: Any) -> None:
+    """Adds the page on which a gel is pressed, if there is one."""
+    if PRESSED.exists():
+        shutil.copy(PRESSED, config["site_dir"])
 
 
 def link(found: "re.Match[str]", folder: Path, repository: str) -> str:

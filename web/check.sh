@@ -26,6 +26,13 @@ node --test tests/engine.test.mjs tests/package.test.mjs
 
 if [ -x "${CHROMIUM:-/usr/bin/chromium}" ]; then
     node --test --test-concurrency=1 tests/page.test.mjs tests/view.test.mjs
+    python=${TWINTAC_PYTHON:-python3}
+    if "$python" -c "import mkdocs, twintac" 2>/dev/null; then
+        (cd .. && NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --strict --quiet) # target/site, now with the page
+        node --test tests/site.test.mjs
+    else
+        skipped="$skipped the first page of the documentation (pip install './python[docs]', or name a Python in TWINTAC_PYTHON)"
+    fi
 else
     skipped="$skipped the page in a browser (apt install chromium, or name one in CHROMIUM)"
 fi

@@ -10,7 +10,7 @@ use anyhow::Result;
 use xtask::cargo::{cargo, run};
 use xtask::{figures, fuzz, layers, readme, results, web};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | crates | results [FILE] | pictures [NAME] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench import [--json] | bench twin |
+const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | crates | results [FILE] | pictures [NAME] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench view | bench import [--json] | bench twin |
     bench sensors [--rewrite] |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | hardware [--sensor FILE [--chip NAME]] [--out DIR] [--release] | web | verify [rung…] [--quick] [--json] [--ccx CASE] [--quadratic CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
@@ -27,6 +27,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | c
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
+         view: ten clients press gels through one `twintac view` for ten minutes; writes docs/benchmarks/view.*
          serial: a thousand frames of sixteen taxels a second over a serial line for ten minutes; writes docs/benchmarks/serial.*
          import: how long a CSV log of two million rows takes to import, and how much memory
          twin: how fast a thousand twins are stepped; writes docs/benchmarks/twin.*
@@ -101,7 +102,10 @@ fn bench() -> Result<()> {
         Some("sensors") => return cargo(&of_example("twintac-sensors", "rate", &given[1..])),
         _ => {}
     }
-    if given.first().is_some_and(|bench| bench == "recording") {
+    if given
+        .first()
+        .is_some_and(|bench| bench == "recording" || bench == "view")
+    {
         cargo(&["build", "--release", "--package", "twintac-cli"])?; // it is run as its users run it
     }
     cargo(&of_verify(&given))

@@ -15,6 +15,7 @@
 //! peers/      the same press in MuJoCo and Newton, by the Python scripts in peers/
 //! recording/  recordings on the emulated bench: frame rate, twenty faults, random kills
 //! import, serial    import of a large CSV log; frames over a serial line
+//! view        many clients of `twintac view` for minutes
 //! ```
 //!
 //! Each benchmark prints a table, or writes a page and a JSON file to `docs/benchmarks`. A
@@ -40,6 +41,7 @@ mod rung;
 mod scaling;
 #[cfg(unix)]
 mod serial;
+mod view;
 
 #[derive(Parser)]
 #[command(about = "Benchmarks and verification of the soft body and of the bench")]
@@ -82,6 +84,9 @@ enum Task {
     /// docs/benchmarks/serial.*
     #[cfg(unix)]
     Serial(serial::Options),
+    /// Press many gels through one `twintac view`, and measure its memory; writes
+    /// docs/benchmarks/view.*
+    View(view::Options),
     /// Import such a log, and print one JSON line
     ReadLog {
         /// The log
@@ -107,6 +112,7 @@ fn main() -> ExitCode {
         Task::Import { json } => import::run(json).map(|()| true),
         #[cfg(unix)]
         Task::Serial(options) => serial::run(&options).map(|()| true),
+        Task::View(options) => view::run(&options).map(|()| true),
         Task::ReadLog { log } => import::print_imported(&log).map(|()| true),
         Task::Press { poissons_ratio } => peers::print_row(poissons_ratio).map(|()| true),
     };

@@ -10,7 +10,7 @@ use twintac_depth_table::{DepthTable, PressFrame};
 use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
-use twintac_softbody::{Element, Frame, Material, SoftBody, SolveError, SolverSettings, State};
+use twintac_softbody::{Frame, Material, SoftBody, SolveError, State};
 
 use crate::error::reason;
 use crate::history::solve_quality;
@@ -61,13 +61,14 @@ const TABLE: Fineness = Fineness {
     rim_share: 1.0,
 };
 
-/// Chosen so that five shapes with rims, pressed to 2 mm on 7,000 nodes, are near a finer solution
-/// in force and pressure (`cargo xtask verify rims`); errors of other presses are larger.
+/// Chosen so that five shapes with rims, pressed to 2 mm on 7,000 nodes, are near the solution on
+/// 90,000 nodes in force and pressure (`cargo xtask verify rims`); errors of other presses are
+/// larger.
 const PATH: Fineness = Fineness {
     scale: 0.7,
     sharpest: 0.45,
     top: 0.6,
-    even_share: 0.7,
+    even_share: 0.83,
     rim_share: 1.6,
 };
 
@@ -336,7 +337,6 @@ impl Gel {
         };
         let coarsest = self.height_mm() / fine_mm;
         let (scale, mut mesh) = coarsen(even, [fineness.scale, coarsest], most)?;
-        let mut solver = self.settings.solver.clone();
         let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
         let rims = |scale: f64, rim_scale: f64| {
             let edge_mm = scale * fine_mm;
@@ -351,9 +351,6 @@ impl Gel {
             let with_rims = closely(rimmed, [1.0, 1.0 / fineness.sharpest], most)?;
             if with_rims.n_nodes_refined() <= most {
                 mesh = with_rims;
-                if solver.element == Element::Layered {
-                    solver.element = Element::Blended;
-                }
             }
         }
         mesh.check_volumes()?;
@@ -361,7 +358,7 @@ impl Gel {
             sensor,
             &mesh,
             self.material.clone(),
-            solver,
+            &self.settings,
             indenter,
             (touch, self.upwards),
         )
@@ -453,11 +450,11 @@ impl GelMesh {
         sensor: &Sensor,
         mesh: &TetMesh,
         material: Material,
-        solver: SolverSettings,
+        settings: &SimulateSettings,
         indenter: Box<dyn SignedDistance>,
         (touch, upwards): (Pose, DVec3),
     ) -> Result<Self, SimulateError> {
-        let mut body = SoftBody::new(mesh, material, solver)?;
+        let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
         let mesh = body.mesh();
         let ports = sensor
             .taxels

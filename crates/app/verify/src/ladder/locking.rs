@@ -70,11 +70,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     for (color, poissons_ratio) in [NEARLY, 0.3].into_iter().enumerate() {
         let (reference_mm, nodes) = rise_mm(Element::Quadratic, poissons_ratio, reference_cells)?;
         n_reference = nodes;
-        for (name, element) in [
-            ("layered", Element::Layered),
-            ("blended", Element::Blended),
-            ("quadratic", Element::Quadratic),
-        ] {
+        for (name, element) in [("layered", Element::Layered), ("quadratic", Element::Quadratic)] {
             let mut points = Vec::new();
             for &n in cells {
                 if element != Element::Quadratic || n < reference_cells {
@@ -82,9 +78,8 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
                     points.push([n as f64, 100.0 * (found_mm / reference_mm - 1.0)]);
                 }
             }
-            if let (Element::Layered | Element::Blended, Some([n, error])) = (element, points.last().copied())
-            {
-                let name = format!("ν = {poissons_ratio}: error in the corner's rise, {name}, {n} cells");
+            if let (Element::Layered, Some([n, error])) = (element, points.last().copied()) {
+                let name = format!("ν = {poissons_ratio}: error in the corner's rise, layered, {n} cells");
                 figures.push(Figure::at_most(3.0, name, error, "%"));
             }
             let label = format!("ν = {poissons_ratio}, {name}");

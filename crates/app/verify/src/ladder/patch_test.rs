@@ -11,9 +11,8 @@ use super::rubbers::rubbers;
 use crate::rung::{Effort, Figure, Outcome};
 
 /// All kinds of elements.
-pub(crate) const ELEMENTS: [(&str, Element); 4] = [
+pub(crate) const ELEMENTS: [(&str, Element); 3] = [
     ("layered", Element::Layered),
-    ("blended", Element::Blended),
     ("composite", Element::Composite),
     ("quadratic", Element::Quadratic),
 ];

@@ -18,9 +18,6 @@ pub enum Element {
     /// fastest: more accurate pressures there than composite, and a little slower.
     #[default]
     Layered,
-    /// Mostly quadratic in all tetrahedra: more accurate than layered where the gel folds around a
-    /// rim, and slower.
-    Blended,
     /// Linear on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
     Composite,
     /// Quadratic on each tetrahedron: more accurate with the same nodes, but slow, and it may fold
@@ -32,7 +29,6 @@ impl Element {
     fn table(self, nodes: &[u32; NODES], children: &[[u32; 4]; 8], is_bonded: [bool; 4]) -> Table {
         match self {
             Self::Layered if is_bonded.contains(&true) => layered::table(nodes, children, is_bonded),
-            Self::Blended => layered::table(nodes, children, [true; 4]),
             Self::Layered | Self::Composite => composite::table(nodes, children),
             Self::Quadratic => quadratic::table(),
         }
@@ -41,7 +37,7 @@ impl Element {
     /// Part of the composite element in the energy at bonded nodes.
     pub(crate) fn flat_share(self) -> f64 {
         match self {
-            Self::Layered | Self::Blended => layered::FLAT_SHARE,
+            Self::Layered => layered::FLAT_SHARE,
             Self::Composite => 1.0,
             Self::Quadratic => 0.0,
         }

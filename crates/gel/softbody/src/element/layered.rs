@@ -14,8 +14,6 @@
 //!
 //! Such displacements may fold between quadrature points where an indenter comes close to the
 //! board. A small part of the energy is that of the composite element, which resists that.
-//!
-//! Blended elements treat all corners like bonded ones.
 
 use super::table::{EDGES, NODES, QuadraturePoint, Table, ends};
 use super::{composite, quadratic};
@@ -31,8 +29,8 @@ pub(crate) const FLAT_SHARE: f64 = 0.15;
 const OUTWARDS: f64 = 1.171_080;
 
 /// The table of a coarse tetrahedron with these ten nodes, which is cut into these eight
-/// tetrahedra, and at whose corners edges bend where this says so.
-pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8], bends: [bool; 4]) -> Table {
+/// tetrahedra, and of whose corners these are bonded.
+pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8], is_bonded: [bool; 4]) -> Table {
     let share = |share: f64| {
         move |point: QuadraturePoint| QuadraturePoint {
             volume: share * point.volume,
@@ -40,7 +38,7 @@ pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8], bends: [bool
         }
     };
     let flat = composite::points(nodes, children).map(share(FLAT_SHARE));
-    let is_quadratic = |edge: &[u8; 2]| edge.iter().any(|&corner| bends[corner as usize]);
+    let is_quadratic = |edge: &[u8; 2]| edge.iter().any(|&corner| is_bonded[corner as usize]);
     let bent: Vec<QuadraturePoint> = if EDGES.iter().all(is_quadratic) {
         quadratic::points().collect()
     } else {

@@ -178,7 +178,7 @@ proptest! {
         moves in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
         before in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
         element in prop_oneof![
-            Just(Element::Layered), Just(Element::Blended), Just(Element::Composite), Just(Element::Quadratic)
+            Just(Element::Layered), Just(Element::Composite), Just(Element::Quadratic)
         ],
     ) {
         let (_, elements) = one(element);
