@@ -25,7 +25,9 @@ pub struct Frame {
     pub residual: f64,
     /// Largest depth of a node inside a shape, mm.
     pub penetration_mm: f64,
-    /// Smallest ratio of the volume of a tetrahedron to its undeformed volume.
+    /// Smallest ratio of the volume of a tetrahedron to its undeformed volume. With
+    /// [`Element::Quadratic`](crate::Element::Quadratic), it is that of the volume at a point,
+    /// corners included, and 0 or less where elements have folded.
     pub smallest_volume_ratio: f64,
     /// Wall time, s.
     pub wall_time_s: f64,

@@ -178,10 +178,12 @@ fn frame_at(frames: &[FollowedFrame], depth_mm: f64) -> Option<&FollowedFrame> {
 }
 
 /// Differences in force, and in pressure at the ports relative to the largest, at each depth, %;
-/// NaN where a depth was not reached.
+/// NaN where a depth was not reached, or where elements of the reference have folded.
 fn differences(frames: &[FollowedFrame], reference: &[FollowedFrame]) -> [[f64; 2]; 3] {
     DEPTHS_MM.map(|depth_mm| {
-        let found = frame_at(frames, depth_mm).zip(frame_at(reference, depth_mm));
+        let reference = frame_at(reference, depth_mm);
+        let reference = reference.filter(|frame| frame.quality.smallest_volume_ratio > 0.0);
+        let found = frame_at(frames, depth_mm).zip(reference);
         found.map_or([f64::NAN; 2], |(frame, reference)| {
             let largest_kpa = reference.pressure_kpa.values().copied().fold(0.0, f64::max);
             let ports = frame.pressure_kpa.iter();

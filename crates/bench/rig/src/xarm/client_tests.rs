@@ -140,10 +140,12 @@ fn controller(arm: Arm) -> (SocketAddr, Arc<Mutex<Arm>>, JoinHandle<()>) {
                 let Some(response) = shared.lock().unwrap().respond(&request) else {
                     continue;
                 };
-                stream.write_all(&[0, 0, 0, 2, 0, 3, FEEDBACK, 1, 2]).unwrap();
                 let (front, rest) = response.split_at(5);
-                stream.write_all(front).unwrap();
-                stream.write_all(rest).unwrap();
+                let pieces = [&[0, 0, 0, 2, 0, 3, FEEDBACK, 1, 2][..], front, rest];
+                // A client may leave without reading the last response.
+                if pieces.iter().any(|piece| stream.write_all(piece).is_err()) {
+                    return;
+                }
             }
         }
     });

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::body::SoftBody;
 use crate::contact::Contact;
+use crate::element::Element;
 use crate::frame::Frame;
 use crate::newton::Equilibrium;
 use crate::state::State;
@@ -63,9 +64,18 @@ impl SoftBody {
                 .iter()
                 .map(Contact::penetration_mm)
                 .fold(0.0, f64::max),
-            smallest_volume_ratio: equilibrium.smallest_volume_ratio,
+            smallest_volume_ratio: self.smallest_volume_ratio(state, equilibrium),
             wall_time_s,
             cost: std::mem::take(&mut state.workspace.buffers(self).cost),
+        }
+    }
+
+    /// Of quadratic tetrahedra, those between the quadrature points count too.
+    fn smallest_volume_ratio(&self, state: &State, equilibrium: &Equilibrium) -> f64 {
+        let at_points = equilibrium.smallest_volume_ratio;
+        match self.settings.element {
+            Element::Quadratic => at_points.min(self.elements.smallest_corner_ratio(&state.displacements_mm)),
+            Element::Layered | Element::Composite => at_points,
         }
     }
 }

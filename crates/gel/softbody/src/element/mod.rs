@@ -14,6 +14,7 @@
 mod composite;
 mod deformation;
 mod elements;
+mod folding;
 mod forces;
 mod law;
 mod layered;

@@ -15,12 +15,27 @@ pub(super) fn table() -> Table {
 
 /// The quadrature points of that table.
 pub(super) fn points() -> impl Iterator<Item = QuadraturePoint> {
-    (0..4).map(point)
+    (0..4).map(|nearest| {
+        let mut coordinates = [(1.0 - NEAR) / 3.0; 4];
+        coordinates[nearest] = NEAR;
+        point(coordinates)
+    })
 }
 
-fn point(nearest: usize) -> QuadraturePoint {
-    let mut coordinates = [(1.0 - NEAR) / 3.0; 4];
-    coordinates[nearest] = NEAR;
+/// The corners as points without volume.
+pub(super) fn corners() -> impl Iterator<Item = QuadraturePoint> {
+    (0..4).map(|corner| {
+        let mut coordinates = [0.0; 4];
+        coordinates[corner] = 1.0;
+        QuadraturePoint {
+            volume: 0.0,
+            ..point(coordinates)
+        }
+    })
+}
+
+/// The point with these barycentric coordinates.
+fn point(coordinates: [f64; 4]) -> QuadraturePoint {
     // Derivatives by the four barycentric coordinates. Along an edge from the first corner, one
     // coordinate rises and the first falls.
     let slopes = |node: u8| {

@@ -12,7 +12,7 @@ use crate::{Material, Model, PronyTerm};
 const CORNERS: [f64; 4] = [0.004, -0.002, 0.007, 0.001];
 
 /// One coarse tetrahedron, and its eight parts.
-fn one(element: Element) -> (Vec<DVec3>, Elements) {
+pub(super) fn one(element: Element) -> (Vec<DVec3>, Elements) {
     let mesh = twintac_mesh::TetMesh {
         nodes_mm: vec![
             DVec3::ZERO,
