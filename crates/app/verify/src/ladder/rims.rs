@@ -198,7 +198,7 @@ fn differences(frames: &[FollowedFrame], reference: &[FollowedFrame]) -> [[f64; 
 
 const QUANTITIES: [&str; 2] = ["force", "pressure at the ports, of the largest"];
 
-/// The differences of several presses, sorted by size: for each depth and quantity, %.
+/// The differences of several presses, for each depth and quantity, %.
 struct Sizes(Vec<[[f64; 2]; 3]>);
 
 impl Sizes {
@@ -286,7 +286,8 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
             "Bodies with rims of 0.3 mm are pressed at ({}, {}) mm in {N_FRAMES} frames to {DEEPEST_MM} mm, \
              without friction: on a mesh of {} nodes, as it is pressed in real time, and with quadratic \
              elements on a mesh of {} nodes, the reference. Its difference from another one of {} nodes, with \
-             longer edges everywhere, shows how large its own error may be. Contact and meshes have \
+             longer edges everywhere, shows how large its own error may be. A depth at which elements of the \
+             reference have folded has no number, and its limit does not hold. Contact and meshes have \
              constants that were chosen on these very presses. Another {N_DRAWN} presses are drawn (seed \
              {SEED}): the same kinds of shapes in other sizes, with rims of 0.25 to 0.5 mm, turned by any \
              angle, anywhere within {REACH} of the gel's half sides. No constant was chosen on them.\n",
