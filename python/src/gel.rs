@@ -89,9 +89,10 @@ impl Gel {
     /// - `poses`: poses in the gel's frame between which the indenter will move, at least one. The
     ///   mesh is fine along the straight lines between them, and for the deepest of them.
     /// - `deadline_ms`: limit of the wall time of each frame, 1 to 60000 ms. A frame is then
-    ///   returned at the limit as far as it is computed: `GelState.converged` says whether its
-    ///   forces are balanced, and `GelState.residual` how nearly. Frames with a `force_n` ignore
-    ///   the limit. Readings with a limit are not reproducible.
+    ///   returned at the limit as far as it is computed: `GelState.converged` says whether it
+    ///   is at equilibrium, `GelState.residual` how nearly, and `GelState.behind_mm` how far it is
+    ///   behind. Frames with a `force_n` ignore the limit. Readings with a limit are not
+    ///   reproducible.
     ///
     /// Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
     /// gel, and for a limit out of its range.

@@ -121,8 +121,8 @@ impl GelState {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.depth_mm))
     }
 
-    /// Whether the forces of the last frame are balanced. They always are, unless the `deadline_ms`
-    /// of `Gel.state` came first. `None` before the first frame.
+    /// Whether the last frame is the equilibrium at the pose that was asked for. It always is,
+    /// unless the `deadline_ms` of `Gel.state` came first. `None` before the first frame.
     #[getter]
     fn converged(&self, py: Python<'_>) -> PyResult<Option<bool>> {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.converged))
@@ -132,6 +132,13 @@ impl GelState {
     #[getter]
     fn residual(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.quality.residual))
+    }
+
+    /// How far the indenter at the last frame is behind the pose that was asked for, mm; 0 without
+    /// a `deadline_ms`. The next step goes on from there. `None` before the first frame.
+    #[getter]
+    fn behind_mm(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        self.look(py, |held| held.last.as_ref().map(|frame| frame.behind_mm))
     }
 
     /// Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. Its z

@@ -225,10 +225,10 @@ def test_a_frame_with_a_deadline_says_whether_it_has_settled(gel: Gel) -> None:
     touch = gel.touch("sphere-25", Pose((-4.0, 4.0, 0.0)))
     poses = [moved(touch, 0.0, 1.0), moved(touch, 2.0, 1.0)]
     state = gel.state("sphere-25", poses, deadline_ms=60_000)
-    assert state.converged is None and state.residual is None
+    assert state.converged is None and state.residual is None and state.behind_mm is None
     waited = gel.state("sphere-25", poses)
     assert np.array_equal(state.step(0.02, poses[0]), waited.step(0.02, poses[0]))
-    assert state.converged is True
+    assert state.converged is True and state.behind_mm == 0.0
     assert state.residual is not None and 0.0 <= state.residual < 1e-3
     hurried = gel.state("sphere-25", poses, deadline_ms=1)
     hurried.step(0.02, poses[0])

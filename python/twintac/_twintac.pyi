@@ -195,9 +195,10 @@ class Gel:
         - `poses`: poses in the gel's frame between which the indenter will move, at least one. The
           mesh is fine along the straight lines between them, and for the deepest of them.
         - `deadline_ms`: limit of the wall time of each frame, 1 to 60000 ms. A frame is then
-          returned at the limit as far as it is computed: `GelState.converged` says whether its
-          forces are balanced, and `GelState.residual` how nearly. Frames with a `force_n` ignore
-          the limit. Readings with a limit are not reproducible.
+          returned at the limit as far as it is computed: `GelState.converged` says whether it
+          is at equilibrium, `GelState.residual` how nearly, and `GelState.behind_mm` how far it is
+          behind. Frames with a `force_n` ignore the limit. Readings with a limit are not
+          reproducible.
 
         Raises `Error` for an indenter that the sensor does not have, for a first pose beside the
         gel, and for a limit out of its range.
@@ -255,12 +256,17 @@ class GelState:
         """
     @property
     def converged(self) -> bool | None:
-        """Whether the forces of the last frame are balanced. They always are, unless the `deadline_ms`
-        of `Gel.state` came first. `None` before the first frame.
+        """Whether the last frame is the equilibrium at the pose that was asked for. It always is,
+        unless the `deadline_ms` of `Gel.state` came first. `None` before the first frame.
         """
     @property
     def residual(self) -> float | None:
         """Fraction of the load that is unbalanced at the last frame; `None` before the first frame."""
+    @property
+    def behind_mm(self) -> float | None:
+        """How far the indenter at the last frame is behind the pose that was asked for, mm; 0 without
+        a `deadline_ms`. The next step goes on from there. `None` before the first frame.
+        """
     @property
     def force_n(self) -> _Float:
         """Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. Its z

@@ -221,8 +221,8 @@ pub(crate) struct Simulate {
     /// Print the results of a path as JSON.
     #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) json: bool,
-    /// Limit the wall time of each frame of a path, ms, converged or not; two more columns show
-    /// convergence and residual.
+    /// Limit the wall time of each frame of a path, ms, converged or not; three more columns show
+    /// convergence, residual and how far the indenter is behind.
     #[arg(long, value_name = "MS", requires = "path", conflicts_with_all = ["run", "protocol"], value_parser = clap::value_parser!(u32).range(1..=60_000))]
     pub(crate) deadline_ms: Option<u32>,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].

@@ -152,4 +152,10 @@ fn frames_with_a_deadline_say_whether_they_have_settled() {
     assert!(late[1..].iter().any(|row| row[converged] == "false"), "{late:?}");
     let residual = |row: &Vec<String>| row[converged + 1].parse::<f64>().unwrap();
     assert!(late[1..].iter().all(|row| residual(row) < 1.0), "{late:?}");
+    let is_behind = |row: &Vec<String>| row[converged + 2].parse::<f64>().unwrap() > 0.0;
+    assert!(
+        late[1..]
+            .iter()
+            .all(|row| row[converged] == "false" || !is_behind(row))
+    );
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use serde::Serialize;
-use twintac_simulate::Followed;
+use twintac_simulate::{Followed, FollowedFrame};
 use twintac_softbody::LinearSolver;
 
 use crate::cases::{self, Case};
@@ -79,6 +79,8 @@ struct Within {
     pressure_error_percent: f64,
     /// Largest residual: unbalanced forces, % of the load.
     residual_percent: f64,
+    /// How far the indenter was behind its path at most, mm.
+    behind_mm: f64,
 }
 
 /// Times all cases, prints the results and writes the page.
@@ -117,10 +119,11 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
                 out,
                 "{:>82} {:>8.2} {:>6.1} % {:>6.2} % {:>6.2} %",
                 format!(
-                    "within {} ms ({:.1} % settled, others to {:.1} % of the load):",
+                    "within {} ms ({:.1} % settled, others to {:.1} % of the load, {:.2} mm behind):",
                     within.deadline_ms,
                     100.0 * within.settled,
-                    within.residual_percent
+                    within.residual_percent,
+                    within.behind_mm
                 ),
                 within.worst_ms,
                 100.0 * within.in_time,
@@ -167,15 +170,16 @@ fn page(cases: &[Timed]) -> Result<String> {
     write!(
         text,
         "\nWith a deadline of {} ms for each frame, which then ends converged or not:\n\n\
-         | press | ν | converged | worst, ms | in time | force error | pressure error | largest residual |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|\n",
+         | press | ν | converged | worst, ms | in time | force error | pressure error | largest residual | \
+         farthest behind the path, mm |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
         1e3 * DEADLINE.as_secs_f64()
     )?;
     for timed in cases {
         let within = &timed.within_deadline;
         writeln!(
             text,
-            "| {} | {} | {:.1} % | {:.1} | {:.1} % | {:.2} % | {:.2} % | {:.1} % of the load |",
+            "| {} | {} | {:.1} % | {:.1} | {:.1} % | {:.2} % | {:.2} % | {:.1} % of the load | {:.2} |",
             timed.case,
             timed.nu,
             100.0 * within.settled,
@@ -183,7 +187,8 @@ fn page(cases: &[Timed]) -> Result<String> {
             100.0 * within.in_time,
             within.force_error_percent,
             within.pressure_error_percent,
-            within.residual_percent
+            within.residual_percent,
+            within.behind_mm
         )?;
     }
     Ok(text)
@@ -244,6 +249,7 @@ fn within_deadline(case: &Case, tight: &Followed) -> Result<Within> {
     let followed = case.follow_within(DEADLINE, FAST)?;
     let times_ms = times_ms(&followed);
     let [force_error_percent, pressure_error_percent] = errors_percent(&followed, tight);
+    let largest = |of: &dyn Fn(&FollowedFrame) -> f64| followed.frames.iter().map(of).fold(0.0, f64::max);
     let settled = followed.frames.iter().filter(|frame| frame.converged).count();
     Ok(Within {
         deadline_ms: 1e3 * DEADLINE.as_secs_f64(),
@@ -252,14 +258,8 @@ fn within_deadline(case: &Case, tight: &Followed) -> Result<Within> {
         settled: settled as f64 / times_ms.len() as f64,
         force_error_percent,
         pressure_error_percent,
-        residual_percent: 100.0
-            * worst(
-                &followed
-                    .frames
-                    .iter()
-                    .map(|frame| frame.quality.residual)
-                    .collect::<Vec<_>>(),
-            ),
+        residual_percent: 100.0 * largest(&|frame| frame.quality.residual),
+        behind_mm: largest(&|frame| frame.behind_mm),
     })
 }
 

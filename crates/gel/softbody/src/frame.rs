@@ -15,19 +15,21 @@ pub struct Frame {
     pub board_reaction_n: DVec3,
     /// Force of all obstacles, N.
     pub obstacle_reaction_n: DVec3,
-    /// Whether the forces are balanced. A step that does not converge is an error, unless its
-    /// deadline has passed ([`crate::State::answer_within`]): then `residual` states how much is
-    /// unbalanced.
+    /// Whether this is the equilibrium at the indenter's pose. A step that does not converge is an
+    /// error, unless its deadline has passed ([`crate::State::answer_within`]): then `residual`
+    /// states how much is unbalanced, and `behind_mm` how far the indenter has still to move.
     pub converged: bool,
+    /// Distance of the indenter's pose in the solution from the pose that was asked for, mm; a turn
+    /// counts as the way of the indenter's farthest point. 0 without a deadline.
+    pub behind_mm: f64,
     /// Newton iterations, including those of failed sub-steps.
     pub iterations: u32,
     /// 2-norm of the unbalanced nodal forces, divided by the load.
     pub residual: f64,
     /// Largest depth of a node inside a shape, mm.
     pub penetration_mm: f64,
-    /// Smallest ratio of the volume of a tetrahedron to its undeformed volume. With
-    /// [`Element::Quadratic`](crate::Element::Quadratic), it is that of the volume at a point,
-    /// corners included, and 0 or less where elements have folded.
+    /// Smallest ratio of the volume at a point to its undeformed volume, of the quadrature points,
+    /// and of the corners of blended and quadratic elements.
     pub smallest_volume_ratio: f64,
     /// Wall time, s.
     pub wall_time_s: f64,

@@ -65,6 +65,7 @@ impl SoftBody {
         time_step_s: f64,
     ) -> Result<Frame, SolveError> {
         push.check()?;
+        self.finish(state, indenter, None, &mut 0);
         let pose_at = |offset_mm: f64| Pose {
             position_mm: gel_from_indenter.position_mm + push.direction * offset_mm,
             ..*gel_from_indenter

@@ -110,8 +110,10 @@ impl SoftBody {
             .collect()
     }
 
-    /// The response of the material in a step without duration.
+    /// The response of the material at the end of the last step: that of a step without duration,
+    /// or of the step that a deadline has ended, whose history is not that of its end yet.
     fn response<'a>(&'a self, state: &'a State) -> Response<'a> {
-        Response::new(&self.material, 0.0, &state.history)
+        let time_step_s = state.unfinished.as_ref().map_or(0.0, |step| step.time_step_s);
+        Response::new(&self.material, time_step_s, &state.history)
     }
 }

@@ -5,9 +5,10 @@ use std::time::Duration;
 use glam::DVec3;
 use twintac_shape::Pose;
 
+use crate::advance::Unfinished;
 use crate::body::SoftBody;
 use crate::contact::Contact;
-use crate::newton::Workspace;
+use crate::newton::{Beginning, Workspace};
 use crate::relaxation::History;
 use crate::sensitivity::{Direction, Sensitivity};
 use crate::{SoftBodyError, SolverSettings};
@@ -35,8 +36,10 @@ pub struct State {
     pub(crate) sensitivities: Vec<Sensitivity>,
     /// Time after which a step ends, whether it has converged or not.
     pub(crate) deadline: Option<Duration>,
-    /// Whether the last step ended at its deadline.
-    pub(crate) was_late: bool,
+    /// The step that a deadline has ended, if it is to be continued.
+    pub(crate) unfinished: Option<Unfinished>,
+    /// Time that has passed and that no step covers yet, s.
+    pub(crate) uncovered_s: f64,
     pub(crate) workspace: Workspace,
 }
 
@@ -90,6 +93,20 @@ impl State {
         body.n_indenter_parts(self.contacts.len())
     }
 
+    /// Sets the unknowns to those before a step.
+    pub(crate) fn go_back_to(&mut self, beginning: Beginning) {
+        self.displacements_mm = beginning.displacements_mm;
+        self.pressures_mpa = beginning.pressures_mpa;
+        self.contacts = beginning.contacts;
+    }
+
+    /// Makes the state what it was before a step that a deadline has ended.
+    pub(crate) fn take_back(&mut self, step: Unfinished) {
+        self.gel_from_indenter = step.pose_before;
+        self.uncovered_s += step.time_step_s;
+        self.go_back_to(step.beginning);
+    }
+
     /// Prepares for an indenter with this number of parts. If the number differs, it is another
     /// indenter, and nothing is in contact with it yet.
     pub(crate) fn take_parts(&mut self, body: &SoftBody, n_parts: usize) {
@@ -113,11 +130,14 @@ impl State {
     }
 
     /// From now on, a step of [`SoftBody::advance`] ends within this wall time with the solution
-    /// that it has reached, and the next step continues from there: [`crate::Frame::converged`]
-    /// states whether the forces are balanced, [`crate::Frame::residual`] how well. Each part of a
-    /// step does at least one iteration, and no further one that would be late if it took as long
-    /// as the previous. Such results are not reproducible. Presses with a force and presses with
-    /// derivatives ignore the deadline.
+    /// that it has reached: [`crate::Frame::converged`] states whether that is at equilibrium,
+    /// [`crate::Frame::residual`] how much force is unbalanced. Where this is much, the next step
+    /// finishes it before it moves the indenter on: [`crate::Frame::behind_mm`] states how far the
+    /// solution is behind. Each step does at least one iteration, two if it both finishes the last
+    /// one and moves on, and no further one that would be late if it took as long as the previous.
+    /// A step that needs more iterations than the settings allow is taken back, and done anew
+    /// without a deadline. Such results are not reproducible. Presses with a force and presses with derivatives ignore
+    /// the deadline.
     pub fn answer_within(&mut self, deadline: Option<Duration>) {
         self.deadline = deadline;
     }
@@ -160,7 +180,8 @@ impl SoftBody {
             stiffness_n_per_mm: None,
             sensitivities: Vec::new(),
             deadline: None,
-            was_late: false,
+            unfinished: None,
+            uncovered_s: 0.0,
             workspace: Workspace::default(),
         }
     }

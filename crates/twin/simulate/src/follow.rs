@@ -42,10 +42,14 @@ pub struct FollowedFrame {
     /// unless the gel was asked for it by [`Gel::with_stress_along_paths`].
     #[serde(skip)]
     pub stress_feature_kpa_per_mm: Vec<f64>,
-    /// Whether the forces are balanced. They always are, unless the gel has a deadline
-    /// ([`Gel::with_deadline`]) that came first.
+    /// Whether this is the equilibrium at the pose that the path asks for. It always is, unless the
+    /// gel has a deadline ([`Gel::with_deadline`]) that came first.
     #[serde(default = "yes")]
     pub converged: bool,
+    /// How far the indenter of this frame is behind the pose that the path asks for, mm; 0 without
+    /// a deadline.
+    #[serde(default)]
+    pub behind_mm: f64,
     /// Quality of the solve. Its residual says how far the forces are from balance.
     pub quality: SolveQuality,
     /// Wall time of the frame, s. It is not reproducible, and no result depends on it.

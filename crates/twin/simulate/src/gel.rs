@@ -10,7 +10,7 @@ use twintac_depth_table::{DepthTable, PressFrame};
 use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
-use twintac_softbody::{Frame, Material, SoftBody, SolveError, State};
+use twintac_softbody::{Element, Frame, Material, SoftBody, SolveError, SolverSettings, State};
 
 use crate::error::reason;
 use crate::history::solve_quality;
@@ -51,6 +51,9 @@ struct Fineness {
     /// as fractions of the number allowed without rims.
     even_share: f64,
     rim_share: f64,
+    /// The element of meshes with fine rims, if the settings have the default one. With as many
+    /// nodes, blended takes two to three times as long on the fine meshes of tables.
+    rim_element: Element,
 }
 
 const TABLE: Fineness = Fineness {
@@ -59,17 +62,19 @@ const TABLE: Fineness = Fineness {
     top: 1.0,
     even_share: 1.0,
     rim_share: 1.0,
+    rim_element: Element::Layered,
 };
 
 /// Chosen so that five shapes with rims, pressed to 2 mm on 7,000 nodes, are near the solution on
-/// 90,000 nodes in force and pressure (`cargo xtask verify rims`); errors of other presses are
+/// 40,000 nodes in force and pressure (`cargo xtask verify rims`); errors of other presses are
 /// larger.
 const PATH: Fineness = Fineness {
     scale: 0.7,
     sharpest: 0.45,
     top: 0.6,
-    even_share: 0.83,
+    even_share: 0.7,
     rim_share: 1.6,
+    rim_element: Element::Blended,
 };
 
 /// A gel and the settings of its simulation. Many presses share it.
@@ -336,6 +341,7 @@ impl Gel {
             Some(_) => (&PATH, self.settings.max_path_nodes),
         };
         let coarsest = self.height_mm() / fine_mm;
+        let mut solver = self.settings.solver.clone();
         let (scale, mut mesh) = coarsen(even, [fineness.scale, coarsest], most)?;
         let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
         let rims = |scale: f64, rim_scale: f64| {
@@ -351,6 +357,9 @@ impl Gel {
             let with_rims = closely(rimmed, [1.0, 1.0 / fineness.sharpest], most)?;
             if with_rims.n_nodes_refined() <= most {
                 mesh = with_rims;
+                if solver.element == Element::default() {
+                    solver.element = fineness.rim_element;
+                }
             }
         }
         mesh.check_volumes()?;
@@ -358,7 +367,7 @@ impl Gel {
             sensor,
             &mesh,
             self.material.clone(),
-            &self.settings,
+            solver,
             indenter,
             (touch, self.upwards),
         )
@@ -450,11 +459,11 @@ impl GelMesh {
         sensor: &Sensor,
         mesh: &TetMesh,
         material: Material,
-        settings: &SimulateSettings,
+        solver: SolverSettings,
         indenter: Box<dyn SignedDistance>,
         (touch, upwards): (Pose, DVec3),
     ) -> Result<Self, SimulateError> {
-        let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
+        let mut body = SoftBody::new(mesh, material, solver)?;
         let mesh = body.mesh();
         let ports = sensor
             .taxels

@@ -33,7 +33,8 @@ pub struct SimulateSettings {
     pub edges_per_rounding: f64,
     /// Mean distance between a table's frames over depth, mm. A table has at least five steps.
     pub depth_step_mm: f64,
-    /// The solver's own settings.
+    /// The solver's own settings. Meshes of paths that are refined at the indenter's rim have the
+    /// element [`Element::Blended`](twintac_softbody::Element::Blended) in place of the default.
     pub solver: SolverSettings,
 }
 

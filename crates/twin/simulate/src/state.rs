@@ -173,6 +173,7 @@ impl GelState {
                 Vec::new()
             },
             converged: frame.converged,
+            behind_mm: frame.behind_mm,
             quality: solve_quality(&frame),
             wall_time_s: frame.wall_time_s,
             cost: frame.cost,

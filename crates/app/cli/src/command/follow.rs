@@ -34,8 +34,8 @@ pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     }
 }
 
-/// Columns with their units, and rows. With a deadline, two more columns: whether each frame has
-/// converged, and its residual.
+/// Columns with their units, and rows. With a deadline, three more columns: whether each frame has
+/// converged, its residual, and how far its indenter is behind the path.
 fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 8] = [
         "provenance",
@@ -51,7 +51,7 @@ fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<S
     let mut head = HEAD.map(str::to_owned).to_vec();
     head.extend(names.into_iter().flatten().map(|name| format!("{name}_kpa")));
     if with_deadline {
-        head.extend(["converged", "residual"].map(str::to_owned));
+        head.extend(["converged", "residual", "behind_mm"].map(str::to_owned));
     }
     let with_quality = move |frame: &FollowedFrame| {
         let mut row = row(frame);
@@ -59,6 +59,7 @@ fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<S
             row.extend([
                 frame.converged.to_string(),
                 format!("{:.2e}", frame.quality.residual),
+                format!("{:.4}", frame.behind_mm),
             ]);
         }
         row

@@ -11,9 +11,10 @@ use super::rubbers::rubbers;
 use crate::rung::{Effort, Figure, Outcome};
 
 /// All kinds of elements.
-pub(crate) const ELEMENTS: [(&str, Element); 3] = [
+pub(crate) const ELEMENTS: [(&str, Element); 4] = [
     ("layered", Element::Layered),
     ("composite", Element::Composite),
+    ("blended", Element::Blended),
     ("quadratic", Element::Quadratic),
 ];
 

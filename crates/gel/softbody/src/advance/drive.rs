@@ -49,14 +49,20 @@ impl Drive<'_> {
             return 1.0;
         };
         let (low, high) = shape.bounds_mm();
-        let reach_mm = low.abs().max(high.abs()).length();
-        let turn = from.rotation.angle_between(to.rotation);
-        let travel_mm = from.position_mm.distance(to.position_mm) + turn * reach_mm;
+        let travel_mm = way_mm(*shape, from, to);
         let limit_mm = max_travel_mm.min(THICKNESS_PART * (high - low).min_element());
         if travel_mm > limit_mm && limit_mm > 0.0 {
             1.0 / (travel_mm / limit_mm).ceil()
         } else {
             1.0
+        }
+    }
+
+    /// Way that is left at a fraction of the motion, mm; 0 for bonded nodes.
+    pub(super) fn left_mm(&self, fraction: f64) -> f64 {
+        match self {
+            Self::Indenter { shape, to, .. } => way_mm(*shape, &self.pose(fraction), to),
+            Self::Bonded { .. } => 0.0,
         }
     }
 
@@ -75,6 +81,18 @@ impl Drive<'_> {
             }
         }
     }
+}
+
+/// Way of a shape from one pose to another, mm, with the way of its farthest point in a turn.
+pub(super) fn way_mm(shape: &dyn SignedDistance, from: &Pose, to: &Pose) -> f64 {
+    // The angle between equal rotations need not be zero.
+    if from == to {
+        return 0.0;
+    }
+    let (low, high) = shape.bounds_mm();
+    let reach_mm = low.abs().max(high.abs()).length();
+    let turn = from.rotation.angle_between(to.rotation);
+    from.position_mm.distance(to.position_mm) + turn * reach_mm
 }
 
 /// A shape that is nowhere.

@@ -5,3 +5,5 @@ mod drive;
 mod motion;
 mod report;
 mod substep;
+
+pub(crate) use substep::Unfinished;

@@ -6,7 +6,6 @@ use glam::DVec3;
 
 use crate::body::SoftBody;
 use crate::contact::Contact;
-use crate::element::Element;
 use crate::frame::Frame;
 use crate::newton::Equilibrium;
 use crate::state::State;
@@ -17,6 +16,7 @@ impl SoftBody {
         &self,
         state: &mut State,
         equilibrium: &Equilibrium,
+        behind_mm: f64,
         iterations: u32,
         wall_time_s: f64,
     ) -> Frame {
@@ -56,7 +56,8 @@ impl SoftBody {
             indenter_torque_n_mm: torque,
             board_reaction_n: held,
             obstacle_reaction_n,
-            converged: equilibrium.is_settled,
+            converged: equilibrium.is_settled && behind_mm == 0.0,
+            behind_mm,
             iterations,
             residual: equilibrium.residual,
             penetration_mm: state
@@ -64,18 +65,9 @@ impl SoftBody {
                 .iter()
                 .map(Contact::penetration_mm)
                 .fold(0.0, f64::max),
-            smallest_volume_ratio: self.smallest_volume_ratio(state, equilibrium),
+            smallest_volume_ratio: equilibrium.smallest_volume_ratio,
             wall_time_s,
             cost: std::mem::take(&mut state.workspace.buffers(self).cost),
-        }
-    }
-
-    /// Of quadratic tetrahedra, those between the quadrature points count too.
-    fn smallest_volume_ratio(&self, state: &State, equilibrium: &Equilibrium) -> f64 {
-        let at_points = equilibrium.smallest_volume_ratio;
-        match self.settings.element {
-            Element::Quadratic => at_points.min(self.elements.smallest_corner_ratio(&state.displacements_mm)),
-            Element::Layered | Element::Composite => at_points,
         }
     }
 }

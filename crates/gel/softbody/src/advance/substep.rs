@@ -7,30 +7,46 @@ use super::drive::Drive;
 use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody, for_each_contact};
 use crate::element::{self, Response};
-use crate::newton::{Equilibrium, Failure, Start, Step, Unknowns};
+use crate::newton::{ALMOST, Beginning, Equilibrium, Failure, Start, Step, Unknowns};
 use crate::sensitivity;
 use crate::state::State;
 
 /// Largest number of times that contact points are chosen again within a step.
 const MOST_LOOKS: u32 = 3;
 
+/// A part of a motion that a deadline has ended before the forces were nearly balanced.
+#[derive(Clone)]
+pub(crate) struct Unfinished {
+    pub(super) from: Pose,
+    pub(super) to: Pose,
+    pub(crate) time_step_s: f64,
+    pub(super) iterations: u32,
+    /// The pose and the unknowns before it.
+    pub(crate) pose_before: Option<Pose>,
+    pub(crate) beginning: Beginning,
+}
+
 impl SoftBody {
-    /// Solves a part of a motion, between two fractions of it. After a failure the state is as it
-    /// was before.
+    /// Solves a part of a motion, between two fractions of it, or goes on with it. After a failure
+    /// the state is as it was before that part.
     pub(super) fn substep(
         &self,
         state: &mut State,
         drive: &Drive,
         part: [f64; 2],
         time_step_s: f64,
+        start: Start,
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
         let [from, to] = part.map(|fraction| drive.pose(fraction));
         let [before, shapes] = [from, to].map(|pose| self.shapes(drive, pose));
-        state.take_parts(self, self.n_indenter_parts(shapes.len()));
         let sensitivities_before = state.sensitivities.clone();
-        self.begin(state, [&before, &shapes]);
-        drive.hold(self, part[1], &mut state.displacements_mm);
+        let is_new = start == Start::Anew;
+        if is_new {
+            state.take_parts(self, self.n_indenter_parts(shapes.len()));
+            self.begin(state, [&before, &shapes]);
+            drive.hold(self, part[1], &mut state.displacements_mm);
+        }
         let State {
             displacements_mm,
             pressures_mpa,
@@ -39,7 +55,6 @@ impl SoftBody {
             workspace,
             last,
             sensitivities,
-            was_late,
             ..
         } = &mut *state;
         let buffers = workspace.buffers(self);
@@ -55,16 +70,17 @@ impl SoftBody {
         };
         let travel_mm = drive.travel_mm(part);
         let turns = from != to && !last.as_ref().is_some_and(|last| last.is_followed_by(travel_mm));
-        let is_ahead = turns && buffers.predict(self, &step, &before, &mut x).unwrap_or(false)
-            || last
-                .as_ref()
-                .is_some_and(|last| last.go_on(travel_mm, x.displacements_mm));
+        let is_ahead = is_new
+            && (turns && buffers.predict(self, &step, &before, &mut x).unwrap_or(false)
+                || last
+                    .as_ref()
+                    .is_some_and(|last| last.go_on(travel_mm, x.displacements_mm)));
         if is_ahead {
             drive.hold(self, part[1], x.displacements_mm);
         }
         let iterations_before = *iterations;
         buffers.passed.clear();
-        let mut solved = buffers.solve(self, &step, &mut x, Start::Anew, iterations);
+        let mut solved = buffers.solve(self, &step, &mut x, start, iterations);
         if is_ahead && *iterations == iterations_before && matches!(solved, Err(Failure::Inverted)) {
             // At the extrapolated displacements a tetrahedron is inverted.
             x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
@@ -80,13 +96,27 @@ impl SoftBody {
             }
             solved = buffers.solve(self, &step, &mut x, Start::Again, iterations);
         }
+        if let Ok(equilibrium) = &solved
+            && !equilibrium.is_settled
+            && equilibrium.residual > ALMOST
+        {
+            let beginning = std::mem::take(&mut buffers.old);
+            state.unfinished = Some(Unfinished {
+                from,
+                to,
+                time_step_s,
+                iterations: *iterations - iterations_before,
+                pose_before: state.gel_from_indenter.replace(to),
+                beginning,
+            });
+            return solved;
+        }
         let solved = solved.and_then(|equilibrium| {
             self.check_sides([&before, &shapes], &x, &buffers.old.displacements_mm)?;
             sensitivity::follow(self, buffers, &step, &mut x, sensitivities)?;
             Ok(equilibrium)
         });
-        if let Ok(equilibrium) = &solved {
-            *was_late = !equilibrium.is_settled;
+        if solved.is_ok() {
             self.settle_friction(&shapes, &mut x);
             let relaxation = step.response.relaxation;
             element::update_history(
@@ -104,10 +134,9 @@ impl SoftBody {
                 state.gel_from_indenter = Some(to);
             }
         } else {
-            displacements_mm.clone_from(&buffers.old.displacements_mm);
-            pressures_mpa.clone_from(&buffers.old.pressures_mpa);
-            contacts.clone_from(&buffers.old.contacts);
             *sensitivities = sensitivities_before;
+            let beginning = std::mem::take(&mut buffers.old);
+            state.go_back_to(beginning);
         }
         solved
     }
@@ -131,7 +160,6 @@ impl SoftBody {
             pressures_mpa,
             contacts,
             workspace,
-            was_late,
             ..
         } = state;
         contacts[..n_parts].iter_mut().for_each(Contact::forget_distances);
@@ -149,11 +177,7 @@ impl SoftBody {
         old.displacements_mm.clone_from(displacements_mm);
         old.pressures_mpa.clone_from(pressures_mpa);
         old.contacts.clone_from(contacts);
-        // A step that ended at its deadline is not at equilibrium, so the depths of its nodes are
-        // not forces yet.
-        if !*was_late {
-            contacts.iter_mut().for_each(Contact::update_multipliers);
-        }
+        contacts.iter_mut().for_each(Contact::update_multipliers);
         for (shape, contact) in before.iter().zip(contacts.iter_mut()) {
             if let Some((friction, touches)) = contact.friction_mut() {
                 friction.begin(shape, touches, self.boundary_mm(displacements_mm));

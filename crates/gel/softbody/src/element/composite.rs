@@ -9,7 +9,7 @@ use super::table::{NODES, QuadraturePoint, Table, ends};
 /// The table of a coarse tetrahedron with these ten nodes, which is cut into these eight
 /// tetrahedra.
 pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8]) -> Table {
-    Table::new(points(nodes, children).collect())
+    Table::new(points(nodes, children).collect(), Vec::new())
 }
 
 /// The quadrature points of that table.

@@ -6,11 +6,12 @@ use std::ops::Range;
 use glam::DVec3;
 use pulp::NullaryFnOnce;
 
-use super::deformation::{Deformation, apply};
+use super::deformation::{Deformation, Matrix, Vector, apply};
 use super::elements::{Elements, Pack};
+use super::folding::Barrier;
 use super::response::Response;
 use super::stress::Stresses;
-use super::table::{NODES, Table};
+use super::table::{NODES, QuadraturePoint, Table};
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::{LANES, Wide, least};
 
@@ -143,15 +144,22 @@ impl NullaryFnOnce for VolumeKernel<'_> {
             let ten = pack.gather(self.displacements_mm);
             let mut sums = [Wide::<f64>::zero(); 4];
             let mut smallest = Wide::<f64>::splat(f64::INFINITY);
-            for point in &self.tables[pack.table].points {
+            let table = &self.tables[pack.table];
+            let mut least_of = |ratios: Wide<f64>| {
+                for (smallest, ratio) in smallest.0.iter_mut().zip(ratios.0) {
+                    *smallest = crate::wide::least(*smallest, ratio);
+                }
+            };
+            for guard in &table.guards {
+                least_of(Deformation::new(&ten, guard, &pack.gradients).volume_ratio);
+            }
+            for point in &table.points {
                 let ratio = Deformation::new(&ten, point, &pack.gradients).volume_ratio;
                 let change = (ratio - Wide::splat(1.0)) * pack.volume_mm3 * Wide::splat(point.volume);
                 for (sum, weight) in sums.iter_mut().zip(point.weights) {
                     *sum += change * Wide::splat(weight);
                 }
-                for (smallest, ratio) in smallest.0.iter_mut().zip(ratio.0) {
-                    *smallest = crate::wide::least(*smallest, ratio);
-                }
+                least_of(ratio);
             }
             for (lane, changes) in changes.iter_mut().enumerate() {
                 *changes = sums.map(|sum| sum.0[lane]);
@@ -190,24 +198,23 @@ impl NullaryFnOnce for ForceKernel<'_> {
                 }
                 let volume_mm3 = pack.volume_mm3 * Wide::splat(point.volume);
                 energies = energies.plus_product(at.energies[index], volume_mm3);
-                for i in 0..3 {
-                    let mut row = stress[i];
-                    for j in 0..3 {
-                        row[j] = row[j].plus_product(-pressure, deformation.cofactor[i][j]) * volume_mm3;
+                let mut scaled = *stress;
+                for (row, cofactor) in scaled.iter_mut().zip(&deformation.cofactor) {
+                    for (entry, cofactor) in row.iter_mut().zip(cofactor) {
+                        *entry = entry.plus_product(-pressure, *cofactor) * volume_mm3;
                     }
-                    // First along the edges of the coarse tetrahedron, then to the nodes.
-                    let mut first = Wide::zero();
-                    let along = apply(&pack.gradients, &row);
-                    for (node, slopes) in point.nodes[1..].iter().zip(&point.slopes) {
-                        let mut force = Wide::zero();
-                        for k in 0..3 {
-                            force = force.plus_product(along[k], Wide::splat(slopes[k]));
-                        }
-                        sums[*node as usize][i] += force;
-                        first += force;
-                    }
-                    let sum = &mut sums[point.nodes[0] as usize][i];
-                    *sum -= first;
+                }
+                add_forces(&mut sums, pack, point, &scaled);
+            }
+            for guard in &table.guards {
+                let deformation = Deformation::new(&ten, guard, &pack.gradients);
+                if let Some(barrier) = Barrier::at(&deformation.volume_ratio) {
+                    let shear_mpa = Wide::splat(guard.volume * self.response.shear_modulus_mpa());
+                    let scale = pack.volume_mm3 * shear_mpa;
+                    energies = energies.plus_product(barrier.energy, scale);
+                    let slope = barrier.slope * scale;
+                    let scaled = deformation.cofactor.map(|row| row.map(|entry| entry * slope));
+                    add_forces(&mut sums, pack, guard, &scaled);
                 }
             }
             *energy = energies.sum();
@@ -217,5 +224,25 @@ impl NullaryFnOnce for ForceKernel<'_> {
                 }
             }
         }
+    }
+}
+
+/// Adds the forces of a stress, times the volume, to those of the ten nodes.
+#[inline(always)]
+fn add_forces(sums: &mut [Vector<f64>; NODES], pack: &Pack, point: &QuadraturePoint, scaled: &Matrix<f64>) {
+    for (i, row) in scaled.iter().enumerate() {
+        // First along the edges of the coarse tetrahedron, then to the nodes.
+        let mut first = Wide::zero();
+        let along = apply(&pack.gradients, row);
+        for (node, slopes) in point.nodes[1..].iter().zip(&point.slopes) {
+            let mut force = Wide::zero();
+            for k in 0..3 {
+                force = force.plus_product(along[k], Wide::splat(slopes[k]));
+            }
+            sums[*node as usize][i] += force;
+            first += force;
+        }
+        let sum = &mut sums[point.nodes[0] as usize][i];
+        *sum -= first;
     }
 }

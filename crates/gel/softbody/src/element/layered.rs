@@ -14,8 +14,11 @@
 //!
 //! Such displacements may fold between quadrature points where an indenter comes close to the
 //! board. A small part of the energy is that of the composite element, which resists that.
+//!
+//! With all corners treated as bonded, this is the blended element. Beside rims it would fold
+//! nevertheless, and has a barrier ([`super::folding`]).
 
-use super::table::{EDGES, NODES, QuadraturePoint, Table, ends};
+use super::table::{EDGES, NODES, QuadraturePoint, ends};
 use super::{composite, quadratic};
 
 /// Part of the composite element in the energy. Without it, deep random presses end inside out
@@ -28,9 +31,13 @@ pub(crate) const FLAT_SHARE: f64 = 0.15;
 /// parts it is 7/256.
 const OUTWARDS: f64 = 1.171_080;
 
-/// The table of a coarse tetrahedron with these ten nodes, which is cut into these eight
+/// The quadrature points of a coarse tetrahedron with these ten nodes, which is cut into these eight
 /// tetrahedra, and of whose corners these are bonded.
-pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8], is_bonded: [bool; 4]) -> Table {
+pub(super) fn points(
+    nodes: &[u32; NODES],
+    children: &[[u32; 4]; 8],
+    is_bonded: [bool; 4],
+) -> Vec<QuadraturePoint> {
     let share = |share: f64| {
         move |point: QuadraturePoint| QuadraturePoint {
             volume: share * point.volume,
@@ -45,10 +52,8 @@ pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8], is_bonded: [
         let points = composite::points(nodes, children);
         points.map(|point| bent(&point, is_quadratic)).collect()
     };
-    Table::new(
-        flat.chain(bent.into_iter().map(share(1.0 - FLAT_SHARE)))
-            .collect(),
-    )
+    flat.chain(bent.into_iter().map(share(1.0 - FLAT_SHARE)))
+        .collect()
 }
 
 /// A composite element's point, with quadratic functions of some edges in place of linear ones.

@@ -10,7 +10,7 @@ const NEAR: f64 = 0.585_410_196_624_968_5;
 
 /// The table, which is the same for all coarse tetrahedra.
 pub(super) fn table() -> Table {
-    Table::new(points().collect())
+    Table::new(points().collect(), corners().collect())
 }
 
 /// The quadrature points of that table.
@@ -22,15 +22,12 @@ pub(super) fn points() -> impl Iterator<Item = QuadraturePoint> {
     })
 }
 
-/// The corners as points without volume.
+/// The corners.
 pub(super) fn corners() -> impl Iterator<Item = QuadraturePoint> {
     (0..4).map(|corner| {
         let mut coordinates = [0.0; 4];
         coordinates[corner] = 1.0;
-        QuadraturePoint {
-            volume: 0.0,
-            ..point(coordinates)
-        }
+        point(coordinates)
     })
 }
 

@@ -2,6 +2,7 @@
 
 use twintac_material::Material;
 
+use crate::MPA_PER_KPA;
 use crate::relaxation::{History, Relaxation, Symmetric};
 
 /// Everything other than the displacements that the stress at a point depends on during a step.
@@ -35,6 +36,11 @@ impl<'a> Response<'a> {
             history: no_history,
             offsets: Vec::new(),
         }
+    }
+
+    /// Shear modulus at small strain, MPa.
+    pub(super) fn shear_modulus_mpa(&self) -> f64 {
+        MPA_PER_KPA * self.material.model.shear_modulus_kpa()
     }
 
     /// The constant part of the stress at a point in this step, MPa; `None` for an elastic

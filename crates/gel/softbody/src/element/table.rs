@@ -14,6 +14,8 @@ pub(crate) const EDGES: [[u8; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], 
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub(crate) points: Vec<QuadraturePoint>,
+    /// Points at which a barrier resists folding; they have no part in the quadrature.
+    pub(super) guards: Vec<QuadraturePoint>,
     /// Pairs of nodes that contribute to the same point, later node first.
     pub(crate) pairs: Vec<[u8; 2]>,
 }
@@ -35,10 +37,10 @@ pub(crate) struct QuadraturePoint {
 }
 
 impl Table {
-    /// Finds the pairs of nodes of points whose `pairs` are still empty.
-    pub(super) fn new(mut points: Vec<QuadraturePoint>) -> Self {
+    /// Finds the pairs of nodes of points and guards whose `pairs` are still empty.
+    pub(super) fn new(mut points: Vec<QuadraturePoint>, mut guards: Vec<QuadraturePoint>) -> Self {
         let mut pairs: Vec<[u8; 2]> = Vec::new();
-        for point in &mut points {
+        for point in points.iter_mut().chain(&mut guards) {
             for (i, &a) in point.nodes.iter().enumerate() {
                 for &b in &point.nodes[..=i] {
                     let known = pairs.iter().position(|pair| *pair == [a, b]);
@@ -49,11 +51,15 @@ impl Table {
                 }
             }
         }
-        Self { points, pairs }
+        Self {
+            points,
+            guards,
+            pairs,
+        }
     }
 
     pub(crate) fn same_as(&self, other: &Self) -> bool {
-        self.points == other.points
+        self.points == other.points && self.guards == other.guards
     }
 }
 

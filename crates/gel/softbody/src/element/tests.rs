@@ -43,7 +43,7 @@ pub(super) fn one(element: Element) -> (Vec<DVec3>, Elements) {
     (refined.mesh.nodes_mm, elements)
 }
 
-fn material(model: Model, prony: Vec<PronyTerm>) -> Material {
+pub(super) fn material(model: Model, prony: Vec<PronyTerm>) -> Material {
     Material {
         model,
         bulk_modulus_kpa: 1200.0,
@@ -104,7 +104,11 @@ fn tangent(elements: &Elements, response: &Response, u: &[DVec3]) -> Vec<(usize,
 }
 
 /// Compares forces with differences of the energy, and the tangent with differences of forces.
-fn check_derivatives(elements: &Elements, response: &Response, u: &[DVec3]) -> Result<(), TestCaseError> {
+pub(super) fn check_derivatives(
+    elements: &Elements,
+    response: &Response,
+    u: &[DVec3],
+) -> Result<(), TestCaseError> {
     let step = 1e-5;
     let (_, forces) = energy(elements, response, u);
     let blocks = tangent(elements, response, u);
@@ -178,7 +182,8 @@ proptest! {
         moves in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
         before in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
         element in prop_oneof![
-            Just(Element::Layered), Just(Element::Composite), Just(Element::Quadratic)
+            Just(Element::Layered), Just(Element::Composite),
+            Just(Element::Blended), Just(Element::Quadratic)
         ],
     ) {
         let (_, elements) = one(element);

@@ -15,6 +15,11 @@ const FORCING: f64 = 0.25;
 /// is small, because errors must not accumulate over steps.
 const UNTOUCHED: f64 = 0.1;
 
+/// Unbalanced forces over the load below which a step that a deadline has ended is left as it is.
+/// Otherwise it is continued to there: multipliers and extrapolations follow from the end of a step,
+/// and would carry its errors on.
+pub(crate) const ALMOST: f64 = 0.01;
+
 /// If more than this fraction of the unbalanced forces remains after a step, a new matrix is
 /// needed.
 const SLOW: f64 = 0.4;
@@ -28,7 +33,8 @@ const LEAST_DAMPING: f64 = 0.01;
 impl Buffers {
     /// Finds the equilibrium of a step, starting from the given unknowns. `iterations` is
     /// increased. If the step has a deadline, it ends after the first iteration at which another
-    /// iteration of the same duration would be late.
+    /// iteration of the same duration would be late; a step that goes on, where the forces are
+    /// almost balanced.
     pub(crate) fn solve(
         &mut self,
         body: &SoftBody,
@@ -40,7 +46,7 @@ impl Buffers {
         self.damping = 0.0;
         let settings = &body.settings;
         let mut now = match start {
-            Start::Anew => self.evaluate(body, step, x),
+            Start::Anew | Start::GoOn => self.evaluate(body, step, x),
             Start::Again => self.evaluate_again(body, step, x),
         }
         .ok_or(Failure::Inverted)?;
@@ -76,8 +82,11 @@ impl Buffers {
                 continue;
             }
             let last = std::mem::replace(&mut began, Instant::now());
-            let is_late = |ends_at| began + (began - last) > ends_at;
-            if iteration > 0 && self.ends_at.is_some_and(is_late) && now.smallest_volume_ratio > 0.0 {
+            if iteration > 0 {
+                self.iteration = began - last;
+            }
+            let is_enough = start == Start::GoOn && residual <= ALMOST;
+            if (is_enough || iteration > 0 && self.is_late()) && now.smallest_volume_ratio > 0.0 {
                 return Ok(Equilibrium {
                     residual,
                     smallest_volume_ratio: now.smallest_volume_ratio,
@@ -117,6 +126,12 @@ impl Buffers {
         Err(Failure::NotConverged {
             residual: now.unbalanced_n / now.load_n.max(body.least_load_n()),
         })
+    }
+
+    /// Whether another iteration, if it takes as long as the last, ends after the deadline.
+    fn is_late(&self) -> bool {
+        let after = Instant::now() + self.iteration;
+        self.ends_at.is_some_and(|ends_at| after > ends_at)
     }
 
     /// Increases the damping after short steps, which show that the tangent is a poor guide

@@ -10,5 +10,6 @@ mod step;
 mod workspace;
 
 pub(crate) use assembly::rest_factors;
-pub(crate) use step::{Equilibrium, Failure, Start, Step, Unknowns};
+pub(crate) use iteration::ALMOST;
+pub(crate) use step::{Beginning, Equilibrium, Failure, Start, Step, Unknowns};
 pub(crate) use workspace::{Buffers, Workspace};

@@ -25,10 +25,12 @@ pub(crate) enum Start {
     Anew,
     /// At the end of an iteration for the same step, with other contact points.
     Again,
+    /// Where a deadline ended the same step.
+    GoOn,
 }
 
 /// Unknowns before a step.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Beginning {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
@@ -53,11 +55,11 @@ pub(crate) enum Failure {
 }
 
 /// The end of a step that succeeded.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Equilibrium {
     pub(crate) residual: f64,
     pub(crate) smallest_volume_ratio: f64,
-    /// Whether the forces are balanced; otherwise the deadline has passed.
+    /// Whether the forces are balanced; otherwise a deadline has passed, in this step or before.
     pub(crate) is_settled: bool,
 }
 

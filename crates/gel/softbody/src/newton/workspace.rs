@@ -1,5 +1,7 @@
 //! The scratch memory of Newton's method.
 
+use std::time::Duration;
+
 use glam::DVec3;
 
 use super::step::{Beginning, Evaluation, Passed, Unknowns};
@@ -64,6 +66,8 @@ pub(crate) struct Buffers {
     pub(crate) passed: Vec<Passed>,
     /// Deadline of the step, if it has one.
     pub(crate) ends_at: Option<Instant>,
+    /// Duration of the last iteration.
+    pub(crate) iteration: Duration,
     /// Time spent since this was last read and reset.
     pub(crate) cost: Cost,
 }
@@ -96,6 +100,7 @@ impl Workspace {
                 keeps_passed: false,
                 passed: Vec::new(),
                 ends_at: None,
+                iteration: Duration::ZERO,
                 cost: Cost::default(),
             })
         })

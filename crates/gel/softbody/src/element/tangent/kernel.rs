@@ -5,8 +5,9 @@ use std::ops::Range;
 use glam::DVec3;
 use pulp::NullaryFnOnce;
 
-use super::super::deformation::{Vector, cast, gradients};
+use super::super::deformation::{Deformation, Vector, cast, gradients};
 use super::super::elements::{Elements, Pack};
+use super::super::folding::Barrier;
 use super::super::law::{Points, SecondDerivatives};
 use super::super::response::Response;
 use super::super::spectral;
@@ -95,6 +96,7 @@ impl NullaryFnOnce for Kernel<'_> {
         let model = &self.response.material.model;
         let properties = model.properties();
         let factor = Wide::splat(self.response.relaxation.factor * MPA_PER_KPA);
+        let shear_mpa = self.response.shear_modulus_mpa();
         let mut at = Points::<SecondDerivatives>::new();
         let mut stiffness = PointStiffness::new();
         let mut blocks = [[[Wide::<f32>::zero(); 3]; 3]; MAX_PAIRS];
@@ -158,6 +160,14 @@ impl NullaryFnOnce for Kernel<'_> {
                                 .plus_product(spatial[i], Wide::splat(point.weights[corner]));
                         }
                     }
+                }
+            }
+            for guard in &table.guards {
+                let deformation = Deformation::new(&ten, guard, &coarse_gradients);
+                if let Some(barrier) = Barrier::at(&deformation.volume_ratio) {
+                    let scale = pack_volume_mm3 * Wide::splat(guard.volume * shear_mpa);
+                    let gradients = gradients(&coarse_gradients, guard);
+                    barrier.add_stiffness(&deformation, &gradients, guard, scale, blocks);
                 }
             }
             self.sink.take(index * LANES, table, blocks, &slopes);
