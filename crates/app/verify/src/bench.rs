@@ -28,8 +28,9 @@ const SMALLEST_PRESSURE: f64 = 0.05;
 /// Duration of a frame at 55 Hz, ms.
 const BUDGET_MS: f64 = 1000.0 / 55.0;
 
-/// Deadline of a frame in wall time. The rest of a frame's duration is for reading the ports.
-const DEADLINE: Duration = Duration::from_millis(15);
+/// Deadline of a frame, over the mean wall time of the same frames without one: most frames are in
+/// time on any machine, and some are not.
+const DEADLINE: f64 = 1.5;
 
 /// Number of times that all presses are followed, in turns, because a machine has fast and slow
 /// minutes. The median run of a press counts.
@@ -72,7 +73,6 @@ struct Timed {
 struct Within {
     deadline_ms: f64,
     worst_ms: f64,
-    in_time: f64,
     /// Fraction of the frames that converged before the deadline.
     settled: f64,
     force_error_percent: f64,
@@ -117,16 +117,16 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
             let within = &timed.within_deadline;
             writeln!(
                 out,
-                "{:>82} {:>8.2} {:>6.1} % {:>6.2} % {:>6.2} %",
+                "{:>82} {:>8.2} {:>8} {:>6.2} % {:>6.2} %",
                 format!(
-                    "within {} ms ({:.1} % settled, others to {:.1} % of the load, {:.2} mm behind):",
+                    "within {:.1} ms ({:.1} % settled, others to {:.1} % of the load, {:.2} mm behind):",
                     within.deadline_ms,
                     100.0 * within.settled,
                     within.residual_percent,
                     within.behind_mm
                 ),
                 within.worst_ms,
-                100.0 * within.in_time,
+                "",
                 within.force_error_percent,
                 within.pressure_error_percent
             )?;
@@ -169,22 +169,21 @@ fn page(cases: &[Timed]) -> Result<String> {
     }
     write!(
         text,
-        "\nWith a deadline of {} ms for each frame, which then ends converged or not:\n\n\
-         | press | ν | converged | worst, ms | in time | force error | pressure error | largest residual | \
+        "\nWith a deadline of {DEADLINE} times the mean for each frame, which then ends converged or not:\n\n\
+         | press | ν | deadline, ms | converged | worst, ms | force error | pressure error | largest residual | \
          farthest behind the path, mm |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-        1e3 * DEADLINE.as_secs_f64()
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n"
     )?;
     for timed in cases {
         let within = &timed.within_deadline;
         writeln!(
             text,
-            "| {} | {} | {:.1} % | {:.1} | {:.1} % | {:.2} % | {:.2} % | {:.1} % of the load | {:.2} |",
+            "| {} | {} | {:.1} | {:.1} % | {:.1} | {:.2} % | {:.2} % | {:.1} % of the load | {:.2} |",
             timed.case,
             timed.nu,
+            within.deadline_ms,
             100.0 * within.settled,
             within.worst_ms,
-            100.0 * within.in_time,
             within.force_error_percent,
             within.pressure_error_percent,
             within.residual_percent,
@@ -241,20 +240,19 @@ fn time(case: &Case, fast: &Followed) -> Result<Timed> {
         in_time: part_in_time(&times_ms),
         force_error_percent,
         pressure_error_percent,
-        within_deadline: within_deadline(case, tight)?,
+        within_deadline: within_deadline(case, DEADLINE * total_s / times_ms.len() as f64, tight)?,
     })
 }
 
-fn within_deadline(case: &Case, tight: &Followed) -> Result<Within> {
-    let followed = case.follow_within(DEADLINE, FAST)?;
+fn within_deadline(case: &Case, deadline_s: f64, tight: &Followed) -> Result<Within> {
+    let followed = case.follow_within(Duration::from_secs_f64(deadline_s), FAST)?;
     let times_ms = times_ms(&followed);
     let [force_error_percent, pressure_error_percent] = errors_percent(&followed, tight);
     let largest = |of: &dyn Fn(&FollowedFrame) -> f64| followed.frames.iter().map(of).fold(0.0, f64::max);
     let settled = followed.frames.iter().filter(|frame| frame.converged).count();
     Ok(Within {
-        deadline_ms: 1e3 * DEADLINE.as_secs_f64(),
+        deadline_ms: 1e3 * deadline_s,
         worst_ms: worst(&times_ms),
-        in_time: part_in_time(&times_ms),
         settled: settled as f64 / times_ms.len() as f64,
         force_error_percent,
         pressure_error_percent,
