@@ -38,8 +38,8 @@ impl Gel {
 
     /// The same gel with a limit of the wall time of each frame along paths and of [`Gel::state`].
     /// A frame is returned at the limit even if it has not converged: `converged` says so,
-    /// `quality.residual` is what is left, and `behind_mm` how far the indenter is behind its pose. Frames with a prescribed force ignore the limit. Such
-    /// results are not reproducible.
+    /// `quality.residual` is what is left, and `behind_mm` how far the indenter is behind its pose.
+    /// Frames with a prescribed force ignore the limit. Such results are not reproducible.
     #[must_use]
     pub fn with_deadline(mut self, deadline: Duration) -> Self {
         self.gel = self.gel.with_deadline(deadline);

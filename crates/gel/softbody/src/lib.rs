@@ -20,8 +20,8 @@
 //!
 //! The tetrahedra have a linear pressure, and displacements of twice the resolution, so that nearly
 //! incompressible gels do not lock and their pressure is accurate: each tetrahedron of the mesh is
-//! cut into eight, on which the displacements are linear. In the layer that is bonded, and on request
-//! everywhere, they are mostly quadratic ([`Element`]).
+//! cut into eight, on which the displacements are linear. In the layer that is bonded, and on
+//! request everywhere, they are mostly quadratic ([`Element`]).
 //!
 //! ```text
 //! build        makes a body from a mesh: numbering, elements, boundary, linear systems

@@ -5,7 +5,6 @@ use std::time::Duration;
 use glam::DVec3;
 use twintac_shape::Pose;
 
-use crate::advance::Unfinished;
 use crate::body::SoftBody;
 use crate::contact::Contact;
 use crate::newton::{Beginning, Workspace};
@@ -41,6 +40,18 @@ pub struct State {
     /// Time that has passed and that no step covers yet, s.
     pub(crate) uncovered_s: f64,
     pub(crate) workspace: Workspace,
+}
+
+/// A part of a motion that a deadline has ended before the forces were nearly balanced.
+#[derive(Clone)]
+pub(crate) struct Unfinished {
+    pub(crate) from: Pose,
+    pub(crate) to: Pose,
+    pub(crate) time_step_s: f64,
+    pub(crate) iterations: u32,
+    /// The pose and the unknowns before it.
+    pub(crate) pose_before: Option<Pose>,
+    pub(crate) beginning: Beginning,
 }
 
 /// A motion of the indenter, and the displacements that followed.
@@ -136,8 +147,8 @@ impl State {
     /// solution is behind. Each step does at least one iteration, two if it both finishes the last
     /// one and moves on, and no further one that would be late if it took as long as the previous.
     /// A step that needs more iterations than the settings allow is taken back, and done anew
-    /// without a deadline. Such results are not reproducible. Presses with a force and presses with derivatives ignore
-    /// the deadline.
+    /// without a deadline. Such results are not reproducible. Presses with a force and presses with
+    /// derivatives ignore the deadline.
     pub fn answer_within(&mut self, deadline: Option<Duration>) {
         self.deadline = deadline;
     }

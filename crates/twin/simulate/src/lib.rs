@@ -37,10 +37,11 @@
 //!
 //! **Elements.** The pressure is linear on a coarse mesh. Displacements are linear on the mesh that
 //! results when each coarse tetrahedron is cut into eight (P1-iso-P2/P1), and mostly quadratic in
-//! the layer that is bonded, or everywhere for a path of an indenter with a rim. With plain linear tetrahedra, the pressure of a nearly incompressible
-//! gel is wrong by a factor of two to five, and this pressure is what a barometer reads. Ports in
-//! the bonded surface read the pressure that follows from the forces that hold the gel there; the
-//! coarse mesh still has to be fine where pressures are read.
+//! the layer that is bonded, or everywhere for a path of an indenter with a rim. With plain linear
+//! tetrahedra, the pressure of a nearly incompressible gel is wrong by a factor of two to five, and
+//! this pressure is what a barometer reads. Ports in the bonded surface read the pressure that
+//! follows from the forces that hold the gel there; the coarse mesh still has to be fine where
+//! pressures are read.
 //!
 //! **What is rigid.** Chips in the gel are bonded to it. Each wall of a shell around the gel is an
 //! obstacle of its own.

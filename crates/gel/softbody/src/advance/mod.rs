@@ -5,5 +5,3 @@ mod drive;
 mod motion;
 mod report;
 mod substep;
-
-pub(crate) use substep::Unfinished;

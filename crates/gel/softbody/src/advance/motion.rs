@@ -4,7 +4,6 @@ use glam::DVec3;
 use twintac_shape::{Pose, SignedDistance};
 
 use super::drive::{Drive, way_mm};
-use super::substep::Unfinished;
 use crate::SolveError;
 use crate::body::SoftBody;
 use crate::clock::Instant;
@@ -12,7 +11,7 @@ use crate::contact::{Contact, PassedThrough, RigidBody};
 use crate::frame::Frame;
 use crate::newton::{Equilibrium, Failure, Start};
 use crate::parallel::on_two_threads;
-use crate::state::State;
+use crate::state::{State, Unfinished};
 
 /// What has become of the step that a deadline had ended.
 #[derive(Clone, Copy, PartialEq)]
@@ -80,8 +79,8 @@ impl SoftBody {
         Ok(self.frame(state, &equilibrium, behind_mm, iterations, wall_time_s))
     }
 
-    /// Goes on with the step that a deadline has ended, until the forces are almost balanced. A step
-    /// that fails, or that has had as many iterations as a step may have, is taken back.
+    /// Goes on with the step that a deadline has ended, until the forces are almost balanced. A
+    /// step that fails, or that has had as many iterations as a step may have, is taken back.
     pub(crate) fn finish(
         &self,
         state: &mut State,

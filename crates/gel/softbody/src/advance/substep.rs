@@ -7,28 +7,17 @@ use super::drive::Drive;
 use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody, for_each_contact};
 use crate::element::{self, Response};
-use crate::newton::{ALMOST, Beginning, Equilibrium, Failure, Start, Step, Unknowns};
+use crate::newton::{ALMOST, Equilibrium, Failure, Start, Step, Unknowns};
 use crate::sensitivity;
-use crate::state::State;
+use crate::state::{State, Unfinished};
 
 /// Largest number of times that contact points are chosen again within a step.
 const MOST_LOOKS: u32 = 3;
 
-/// A part of a motion that a deadline has ended before the forces were nearly balanced.
-#[derive(Clone)]
-pub(crate) struct Unfinished {
-    pub(super) from: Pose,
-    pub(super) to: Pose,
-    pub(crate) time_step_s: f64,
-    pub(super) iterations: u32,
-    /// The pose and the unknowns before it.
-    pub(crate) pose_before: Option<Pose>,
-    pub(crate) beginning: Beginning,
-}
-
 impl SoftBody {
     /// Solves a part of a motion, between two fractions of it, or goes on with it. After a failure
     /// the state is as it was before that part.
+    // long: the parts of the state are borrowed together
     pub(super) fn substep(
         &self,
         state: &mut State,

@@ -20,8 +20,8 @@ pub enum Element {
     Layered,
     /// Linear on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
     Composite,
-    /// Mostly quadratic on all tetrahedra, for meshes that are fine at the rims of an indenter: more
-    /// accurate there than layered, but a frame takes half as long again or longer.
+    /// Mostly quadratic on all tetrahedra, for meshes that are fine at the rims of an indenter:
+    /// more accurate there than layered, but a frame takes half as long again or longer.
     Blended,
     /// Quadratic on each tetrahedron: a little more accurate, but deep presses end early, because
     /// tetrahedra would turn inside out; used as a reference.

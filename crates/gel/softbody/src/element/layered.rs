@@ -31,8 +31,8 @@ pub(crate) const FLAT_SHARE: f64 = 0.15;
 /// parts it is 7/256.
 const OUTWARDS: f64 = 1.171_080;
 
-/// The quadrature points of a coarse tetrahedron with these ten nodes, which is cut into these eight
-/// tetrahedra, and of whose corners these are bonded.
+/// The quadrature points of a coarse tetrahedron with these ten nodes, which is cut into these
+/// eight tetrahedra, and of whose corners these are bonded.
 pub(super) fn points(
     nodes: &[u32; NODES],
     children: &[[u32; 4]; 8],

@@ -16,8 +16,8 @@ const FORCING: f64 = 0.25;
 const UNTOUCHED: f64 = 0.1;
 
 /// Unbalanced forces over the load below which a step that a deadline has ended is left as it is.
-/// Otherwise it is continued to there: multipliers and extrapolations follow from the end of a step,
-/// and would carry its errors on.
+/// Otherwise it is continued to there: multipliers and extrapolations follow from the end of a
+/// step, and would carry its errors on.
 pub(crate) const ALMOST: f64 = 0.01;
 
 /// If more than this fraction of the unbalanced forces remains after a step, a new matrix is
