@@ -99,7 +99,8 @@ impl SoftBody {
         }
         let buffers = state.workspace.buffers(self);
         buffers.ends_at = ends_at;
-        buffers.old = unfinished.beginning.clone();
+        // After a failure, the step itself goes back to its beginning.
+        buffers.old = unfinished.beginning;
         let drive = Drive::Indenter { shape, from, to };
         let (time_step_s, iterations_before) = (unfinished.time_step_s, *iterations);
         let found = self.substep(state, &drive, [0.0, 1.0], time_step_s, Start::GoOn, iterations);
@@ -111,7 +112,8 @@ impl SoftBody {
             }
             (Ok(_), None) => Last::Finished,
             (Err(_), _) => {
-                state.take_back(unfinished);
+                state.gel_from_indenter = unfinished.pose_before;
+                state.uncovered_s += time_step_s;
                 Last::TakenBack
             }
         }

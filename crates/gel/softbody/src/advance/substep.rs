@@ -17,7 +17,7 @@ const MOST_LOOKS: u32 = 3;
 impl SoftBody {
     /// Solves a part of a motion, between two fractions of it, or goes on with it. After a failure
     /// the state is as it was before that part.
-    // long: the parts of the state are borrowed together
+    // long: the fields of the state are borrowed together
     pub(super) fn substep(
         &self,
         state: &mut State,
