@@ -46,8 +46,12 @@ fn gel() -> SoftBody {
 }
 
 fn gel_of(material: Material) -> SoftBody {
+    gel_with(material, SolverSettings::default())
+}
+
+fn gel_with(material: Material, settings: SolverSettings) -> SoftBody {
     let mesh = block(&even(-8.0, 8.0, 8), &even(-8.0, 8.0, 8), &even(0.0, TOP_MM, 4));
-    SoftBody::new(&mesh, material, SolverSettings::default()).unwrap()
+    SoftBody::new(&mesh, material, settings).unwrap()
 }
 
 #[test]
@@ -229,6 +233,29 @@ fn a_press_to_a_force_and_an_impossible_step_start_from_a_finished_one() {
     let alone = press(&gel, &mut gel.rest(), &ball, TOP_MM, 1.0).unwrap();
     let ratio = found.indenter_force_n.z / alone.indenter_force_n.z;
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+}
+
+#[test]
+fn a_step_that_had_as_many_iterations_as_it_may_is_done_anew_without_a_deadline() {
+    let (gel, ball) = (gel(), Ball { radius_mm: 2.0 });
+    let few = SolverSettings {
+        max_iterations: 3,
+        tolerance: 0.005,
+        penetration_mm: 0.05,
+        ..SolverSettings::default()
+    };
+    let hasty = gel_with(Material::neo_hookean(70.0, 0.45), few);
+    let mut late = hasty.rest();
+    late.answer_within(NO_TIME);
+    for _ in 0..3 {
+        let frame = press(&hasty, &mut late, &ball, TOP_MM, 0.2).unwrap();
+        assert!(frame.iterations == 1 && frame.residual > 0.01, "{frame:?}");
+    }
+    let redone = press(&hasty, &mut late, &ball, TOP_MM, 0.2).unwrap();
+    assert!(redone.converged && redone.behind_mm == 0.0, "{redone:?}");
+    let alone = press(&gel, &mut gel.rest(), &ball, TOP_MM, 0.2).unwrap();
+    let ratio = redone.indenter_force_n.z / alone.indenter_force_n.z;
+    assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
 }
 
 #[test]
