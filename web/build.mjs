@@ -28,12 +28,20 @@ function texts(folder) {
   return Object.fromEntries(names.map((name) => [name, readFileSync(join(root, folder, name), "utf8")]));
 }
 
+/** Surrogates of the gels of these sensors, compressed. */
+function surrogates() {
+  const folder = join(root, "crates/twin/fast/built_in");
+  const names = readdirSync(folder).filter((name) => name.endsWith(".safetensors"));
+  return Object.fromEntries(names.map((name) => [name, gzipSync(readFileSync(join(folder, name)), { level: 9 }).toString("base64")]));
+}
+
 const wasm = readFileSync(module);
 const compressed = gzipSync(wasm, { level: 9 });
 const program = await bundled("main.ts", {
   SENSORS: JSON.stringify(texts("sensors")),
   MATERIALS: JSON.stringify(texts("materials")),
   LINES: JSON.stringify(texts("firmware/lines")),
+  SURROGATES: JSON.stringify(surrogates()),
   WORKER_PROGRAM: JSON.stringify(await bundled("worker.ts")),
   MODULE_GZIP: JSON.stringify(compressed.toString("base64")),
 });

@@ -18,6 +18,12 @@ export interface Indenter {
   friction?: number;
 }
 
+/** A shape at a pose. */
+export interface Placed {
+  shape: Shape;
+  gel_from_indenter: Pose;
+}
+
 export interface Taxel {
   name: string;
   position_mm: Vector;
@@ -59,17 +65,19 @@ export interface Outline {
   triangles: Uint32Array;
 }
 
-/** One moment of a press. Forces act on the gel. */
+/** One moment of a press. Forces act on the gel. What finite elements compute and a surrogate does not is absent from its frames, and the other way round. */
 export interface Frame {
   depth_mm: number;
   force_n: Vector;
   torque_n_mm: Vector;
   /** At the port of each taxel. */
   pressure_kpa: number[];
-  contact_mm2: number;
-  converged: boolean;
-  iterations: number;
-  residual: number;
+  contact_mm2?: number;
+  converged?: boolean;
+  iterations?: number;
+  residual?: number;
+  /** Out-of-distribution score of a surrogate: above 1, the numbers may be wrong. */
+  novelty?: number;
   provenance: string;
   /** Time that the engine took, ms. */
   took_ms: number;
@@ -123,11 +131,13 @@ export interface Engine {
   open(file: string, text: string): Promise<Sensor>;
   /** Adds an indenter, described as in a sensor's `[[indenters]]`. */
   add(file: string, text: string): Promise<Sensor>;
-  outline(indenter: string): Promise<Outline>;
+  outline(shape: Shape): Promise<Outline>;
   /** Meshes the gel for an indenter that presses anywhere on it, this deep. */
   prepare(indenter: string, depth_mm: number, max_nodes: number): Promise<Mesh>;
   /** Takes the indenter to a pose. */
   step(pose: Pose, since_s: number): Promise<Frame>;
+  /** Presses shapes by a surrogate of the gel, a file that was kept (`twintac fast train` makes such files). The gel of the last mesh is drawn as they indent it, without stress. Depth and torque are those of the first shape. */
+  touch(surrogate: string, bodies: Placed[]): Promise<Frame>;
   /** Lets go of the gel. */
   rest(): Promise<void>;
   offer(): Promise<Offer>;

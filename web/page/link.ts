@@ -1,5 +1,6 @@
 /** A press as a link: what stands after `#` says all that makes its readings. */
 
+import type { Placed } from "./engine.ts";
 import { FIELDS, type Placement } from "./placement.ts";
 import type { Colouring } from "./scene.ts";
 
@@ -12,6 +13,10 @@ export interface Shared {
   /** The description of the indenter, where the sensor does not have it as it is pressed. */
   indenter_text?: string;
   placement: Placement;
+  /** The surrogate that the page has, where one is asked in place of finite elements. */
+  surrogate?: string;
+  /** Shapes that were left in the gel. */
+  left?: Placed[];
   max_nodes: number;
   colouring: Colouring;
   magnified: number;
@@ -49,11 +54,20 @@ function isShared(read: unknown): read is Shared {
     typeof shared.indenter === "string" &&
     ["string", "undefined"].includes(typeof shared.indenter_text) &&
     FIELDS.every((field) => Number.isFinite(shared.placement?.[field])) &&
+    ["string", "undefined"].includes(typeof shared.surrogate) &&
+    (shared.left === undefined || (Array.isArray(shared.left) && shared.left.every(isPlaced))) &&
     Number.isInteger(shared.max_nodes) &&
     ["pressure", "von-mises", "plain"].includes(shared.colouring) &&
     Number.isFinite(shared.magnified) &&
     [0, 1].includes(shared.across)
   );
+}
+
+function isPlaced(read: unknown): read is Placed {
+  const placed = read as Placed;
+  const { position_mm, rotation } = placed?.gel_from_indenter ?? {};
+  const areNumbers = (values: unknown, length: number) => Array.isArray(values) && values.length === length && values.every(Number.isFinite);
+  return typeof placed?.shape?.kind === "string" && areNumbers(position_mm, 3) && areNumbers(rotation, 4);
 }
 
 async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {

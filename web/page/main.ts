@@ -20,6 +20,8 @@ import { WorkerEngine } from "./worker_engine.ts";
 declare const SENSORS: Record<string, string>;
 declare const MATERIALS: Record<string, string>;
 declare const LINES: Record<string, string>;
+/** Surrogates of the gels of these sensors, compressed by gzip, as base64. */
+declare const SURROGATES: Record<string, string>;
 /** The program of the engine's thread, and the module: compressed by gzip, as base64. */
 declare const WORKER_PROGRAM: string;
 declare const MODULE_GZIP: string;
@@ -66,6 +68,8 @@ class Page {
   private indenterText: string | undefined;
   private isFromFile = false;
   private seconds = 0;
+  /** Surrogates that the engine keeps. */
+  private readonly kept = new Set<string>();
 
   constructor(private readonly engine: Engine) {
     this.press = new Press(engine, {
@@ -79,10 +83,14 @@ class Page {
         this.scene.mesh(mesh);
         this.showNodes(nodes);
       },
+      left: (shapes) => {
+        this.scene.left(shapes);
+        element<HTMLButtonElement>("clear").disabled = shapes.length === 0;
+      },
       frame: (frame, at) => {
         this.frame = { frame, at };
         this.isStale = true;
-        if (this.isRecording) this.recording?.add(frame, at);
+        if (this.isRecording) this.recording?.add(frame, at, 1 + this.press.left.length);
       },
       status: (text, kind) => this.say(text, kind),
     });
@@ -139,11 +147,12 @@ class Page {
     select.value = chosen;
   }
 
-  private async open(file: string, text: string, indenter = ""): Promise<void> {
+  private async open(file: string, text: string, indenter = "", asksSurrogate = this.press.surrogate !== undefined): Promise<void> {
     const before = this.opened;
     this.opened = { file, text };
     try {
-      await this.press.open(file, text, indenter);
+      const surrogate = asksSurrogate ? await this.surrogateOf(file, text) : undefined;
+      await this.press.open(file, text, indenter, surrogate);
     } catch (error) {
       this.opened = before;
       throw error;
@@ -152,6 +161,50 @@ class Page {
     this.described = this.press.sensor!.indenters;
     this.isFromFile = false;
     this.showIndenter();
+    this.showSolver();
+  }
+
+  /** The surrogate that the page has of a sensor's gel, handed to the engine. */
+  private async surrogateOf(file: string, text: string): Promise<string | undefined> {
+    const name = file.replace(/\.toml$/, ".safetensors");
+    const compressed = SURROGATES[name];
+    if (SENSORS[file] !== text || compressed === undefined) return undefined;
+    if (!this.kept.has(name)) await this.press.keep(name, new Uint8Array(await unzipped(compressed)));
+    this.kept.add(name);
+    return name;
+  }
+
+  private async useSolver(solver: string): Promise<void> {
+    try {
+      if (solver !== "surrogate") return await this.press.useSurrogate(undefined);
+      const { file, text } = this.opened;
+      const surrogate = await this.surrogateOf(file, text);
+      if (surrogate === undefined) {
+        throw new Error("The page has no surrogate of this gel. Make one by `twintac fast train`, and drop its file (.safetensors) on the page.");
+      }
+      await this.press.useSurrogate(surrogate);
+    } finally {
+      this.showSolver();
+    }
+  }
+
+  private async takeSurrogate(file: string): Promise<void> {
+    this.kept.delete(file);
+    try {
+      await this.press.useSurrogate(file);
+    } finally {
+      this.showSolver();
+    }
+  }
+
+  private showSolver(): void {
+    const isSurrogate = this.press.surrogate !== undefined;
+    element<HTMLSelectElement>("solver").value = isSurrogate ? "surrogate" : "elements";
+    for (const id of ["leave", "clear", "novelty"]) element(id).hidden = !isSurrogate;
+    element("contact").parentElement!.hidden = isSurrogate;
+    // Nothing is known of the stress in the gel.
+    element("cut").hidden = isSurrogate;
+    this.redraw();
   }
 
   private say(text: string, kind: "ready" | "busy" | "error"): void {
@@ -249,6 +302,7 @@ class Page {
       if (SENSORS[file]) await this.open(file, SENSORS[file]);
     });
     chosen("indenter", (name) => this.take(name));
+    chosen("solver", (solver) => this.useSolver(solver));
     chosen("nodes", (nodes) => this.press.useNodes(nodes === "automatic" ? nodes : Number(nodes)));
     chosen("size", (size) => this.resize(Number(size)));
     for (const id of ["colouring", "across", "magnified"]) chosen(id, async () => this.redraw());
@@ -262,6 +316,8 @@ class Page {
     clicked("nearer", () => this.scene.look(0, 0, 1.15));
     clicked("farther", () => this.scene.look(0, 0, 1 / 1.15));
     clicked("lift", () => this.press.aim({ depth_mm: -1 }));
+    clicked("leave", () => void this.attempt(() => this.press.leave()));
+    clicked("clear", () => void this.attempt(() => this.press.replaceLeft([])));
     clicked("record", () => this.record());
     clicked("download", () => this.download());
     clicked("share", () => void this.attempt(() => this.share()));
@@ -321,7 +377,8 @@ class Page {
         use = () => this.takeIndenter(file.name, text(), true);
       } else if (/\.toml$/i.test(file.name) && /\btaxels\b|\[gel/.test(text())) use = () => this.open(file.name, text());
       else if (/\.toml$/i.test(file.name)) use ??= () => this.open(file.name, text());
-      else throw new Error(`\`${file.name}\` is neither a description (.toml) nor a surface (.stl).`);
+      else if (/\.safetensors$/i.test(file.name)) use = () => this.takeSurrogate(file.name);
+      else throw new Error(`\`${file.name}\` is neither a description (.toml) nor a surface (.stl) nor a surrogate (.safetensors).`);
     }
     element<HTMLInputElement>("file").value = "";
     await use?.();
@@ -361,6 +418,9 @@ class Page {
 
   private async share(): Promise<void> {
     if (this.isFromFile) throw new Error("A link can't hold an STL file: send the file, and a link to a shape of the sensor.");
+    const { surrogate, left } = this.press;
+    if (surrogate !== undefined && !this.kept.has(surrogate)) throw new Error("A link can't hold the file of a surrogate: send the file.");
+    if (left.some(({ shape }) => shape.kind === "stl")) throw new Error("A link can't hold an STL file: take the shapes away that were left.");
     await this.press.pressAnew(this.press.target); // who opens the link sees what this page shows
     const { file, text } = this.opened;
     const shared: Shared = {
@@ -369,8 +429,9 @@ class Page {
       indenter: this.press.indenter,
       ...(this.indenterText === undefined ? {} : { indenter_text: this.indenterText }),
       placement: this.press.target,
+      ...(surrogate === undefined ? {} : { surrogate, left: left.map(({ shape, gel_from_indenter }) => ({ shape, gel_from_indenter })) }),
       max_nodes: this.press.nodes,
-      colouring: this.colouring,
+      colouring: element<HTMLSelectElement>("colouring").value as Colouring,
       magnified: this.magnified,
       across: this.across,
     };
@@ -393,12 +454,14 @@ class Page {
     choose("magnified", String(shared.magnified));
     this.press.isAutomatic = false;
     this.press.nodes = shared.max_nodes;
-    await this.open(shared.sensor.file, text, shared.indenter);
+    await this.open(shared.sensor.file, text, shared.indenter, shared.surrogate !== undefined);
     if (shared.indenter_text !== undefined) await this.takeIndenter(`${shared.indenter}.toml`, shared.indenter_text, false);
+    await this.press.replaceLeft(shared.left ?? []);
     await this.press.pressAnew(shared.placement);
   }
 
   private get colouring(): Colouring {
+    if (this.press.surrogate !== undefined) return "plain";
     return element<HTMLSelectElement>("colouring").value as Colouring;
   }
 
@@ -450,7 +513,12 @@ class Page {
     element("force").textContent = `${clean(-z, 3)} N`;
     element("aside").textContent = `${clean(Math.hypot(x, y), 3)} N`;
     element("depth").textContent = `${clean(frame.depth_mm, 2)} mm`;
-    element("contact").textContent = `${clean(frame.contact_mm2, 0)} mm²`;
+    element("contact").textContent = `${clean(frame.contact_mm2 ?? 0, 0)} mm²`;
+    if (frame.novelty !== undefined) {
+      const isUnlike = frame.novelty > 1;
+      element("novelty").textContent = `Out-of-distribution score ${frame.novelty.toFixed(2)}${isUnlike ? ": above 1, the numbers may be wrong" : ""}`;
+      element("novelty").classList.toggle("fault", isUnlike);
+    }
     element("torque").textContent = `${clean(Math.hypot(...frame.torque_n_mm), 2)} N mm`;
     element("provenance").textContent = frame.provenance;
     const name = quantity === "pressure" ? "pressure (kPa)" : "von Mises stress (kPa)";
@@ -474,8 +542,8 @@ class Page {
 
   /** For scripts: the last frame, and where the indenter is. */
   get state() {
-    const { at, target, nodes, median_ms, indenter } = this.press;
-    return { at, target, nodes, median_ms, indenter, frame: this.frame?.frame, deskFrame: this.deskFrame, n_nodes: this.mesh?.n_nodes, isThere: isSame(at, target) };
+    const { at, target, nodes, median_ms, indenter, surrogate, left } = this.press;
+    return { at, target, nodes, median_ms, indenter, surrogate, n_left: left.length, frame: this.frame?.frame, deskFrame: this.deskFrame, n_nodes: this.mesh?.n_nodes, isThere: isSame(at, target) };
   }
 
   /** For scripts: where a place of the gel is on the screen, px. */
@@ -487,9 +555,14 @@ class Page {
 /** The program that the page comes from, or WebAssembly where it is a file. */
 async function engineOfPage(): Promise<Engine> {
   if (SocketEngine.isAt(location)) return SocketEngine.of(location);
-  const compressed = Uint8Array.from(atob(MODULE_GZIP), (letter) => letter.charCodeAt(0));
+  return WorkerEngine.of(WORKER_PROGRAM, await unzipped(MODULE_GZIP));
+}
+
+/** The bytes that were compressed by gzip and written as base64. */
+async function unzipped(base64: string): Promise<ArrayBuffer> {
+  const compressed = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
   const stream = new Blob([compressed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WorkerEngine.of(WORKER_PROGRAM, await new Response(stream).arrayBuffer());
+  return new Response(stream).arrayBuffer();
 }
 
 async function begin(): Promise<void> {

@@ -1,6 +1,6 @@
 /** Takes the indenter to where the hand wants it, frame by frame, and keeps frames short. */
 
-import type { Engine, Frame, Mesh, Outline, Sensor } from "./engine.ts";
+import type { Engine, Frame, Mesh, Outline, Placed, Sensor, Shape } from "./engine.ts";
 import { type Placement, isSame, poseOf, toward } from "./placement.ts";
 
 /** Meshes, from the finest: where frames take too long, the next one is taken. */
@@ -22,10 +22,16 @@ const ANEW_S = 0.02;
 /** How deep the mesh is made for, over the gel's height. */
 const DEPTH_OF_MESH = 0.25;
 
+/** A shape that stays in the gel. */
+export interface Left extends Placed {
+  outline: Outline;
+}
+
 export interface Listener {
   sensor(sensor: Sensor): void;
   outline(outline: Outline): void;
   mesh(mesh: Mesh, nodes: number): void;
+  left(shapes: Left[]): void;
   frame(frame: Frame, at: Placement): void;
   status(text: string, kind: "ready" | "busy" | "error"): void;
 }
@@ -39,6 +45,11 @@ export class Press {
   target: Placement = lifted();
   at: Placement = lifted();
   frame: Frame | undefined;
+  /** The file of the surrogate that is asked in place of finite elements. */
+  surrogate: string | undefined;
+  /** What was left in the gel; a surrogate takes several shapes. */
+  left: Left[] = [];
+  private outline: Outline | undefined;
   private mesh: Mesh | undefined;
   private queue: Promise<unknown> = Promise.resolve();
   private isStepping = false;
@@ -71,10 +82,12 @@ export class Press {
   }
 
   /** Opens a sensor, and takes an indenter of it: the first, if it has none of the name. */
-  open(file: string, text: string, indenter = ""): Promise<void> {
+  open(file: string, text: string, indenter = "", surrogate?: string): Promise<void> {
     return this.inTurn(async () => {
       const sensor = await this.engine.open(file, text);
       this.mesh = undefined;
+      this.surrogate = surrogate;
+      this.hasLeft([]);
       this.hasSensor(sensor);
       const names = this.sensor!.indenters.map(({ name }) => name);
       this.indenter = names.includes(indenter) ? indenter : (names[0] ?? "");
@@ -109,6 +122,43 @@ export class Press {
     });
   }
 
+  /** Asks a surrogate from now on, a file that was kept, or finite elements. */
+  useSurrogate(surrogate: string | undefined): Promise<void> {
+    return this.inTurn(async () => {
+      const before = this.surrogate;
+      this.surrogate = surrogate;
+      if (surrogate === undefined) this.hasLeft([]);
+      try {
+        await this.takeUp();
+      } catch (error) {
+        this.surrogate = before;
+        await this.takeUp();
+        throw error;
+      }
+    });
+  }
+
+  /** Leaves the shape where it is, and takes another one like it out of the gel. */
+  leave(): Promise<void> {
+    return this.inTurn(async () => {
+      if (!this.mesh || !this.outline) return;
+      const placed = { shape: this.shape, gel_from_indenter: poseOf(this.at, this.mesh.touch_mm), outline: this.outline };
+      this.hasLeft([...this.left, placed]);
+      this.target = { ...this.at, depth_mm: -1 };
+      await this.stepTo(this.target);
+    });
+  }
+
+  /** Puts other shapes into the gel in place of those that were left there. */
+  replaceLeft(placed: Placed[]): Promise<void> {
+    return this.inTurn(async () => {
+      const left: Left[] = [];
+      for (const one of placed) left.push({ ...one, outline: await this.engine.outline(one.shape) });
+      this.hasLeft(left);
+      if (this.mesh && this.surrogate !== undefined) await this.stepTo(this.at);
+    });
+  }
+
   /** Where the hand wants the indenter. */
   aim(change: Partial<Placement>): void {
     this.target = this.within({ ...this.target, ...change });
@@ -124,7 +174,7 @@ export class Press {
       const { target } = this;
       this.at = { ...target, depth_mm: -this.highest_mm };
       await this.stepTo(this.at, ANEW_S);
-      while (!isSame(this.at, target)) await this.stepTo(toward(this.at, target, TRAVEL_MM), ANEW_S);
+      while (!isSame(this.at, target)) await this.stepTo(toward(this.at, target, this.travel_mm), ANEW_S);
     });
   }
 
@@ -144,6 +194,22 @@ export class Press {
     return isSame(this.at, this.target) && !this.isStepping;
   }
 
+  private get shape(): Shape {
+    const found = this.sensor?.indenters.find(({ name }) => name === this.indenter);
+    if (!found) throw new Error(`The sensor has no indenter \`${this.indenter}\`.`);
+    return found.shape;
+  }
+
+  /** Farthest that the indenter goes in a frame, mm; a surrogate knows nothing of the frame before. */
+  private get travel_mm(): number {
+    return this.surrogate === undefined ? TRAVEL_MM : Infinity;
+  }
+
+  private hasLeft(left: Left[]): void {
+    this.left = left;
+    this.listener.left(left);
+  }
+
   private hasSensor(sensor: Sensor): void {
     this.sensor = sensor;
     this.listener.sensor(sensor);
@@ -159,7 +225,8 @@ export class Press {
     const depth_mm = Math.min(this.deepest_mm, DEPTH_OF_MESH * sensor.gel_mm[1][2]);
     let mesh: Mesh;
     try {
-      this.listener.outline(await this.engine.outline(this.indenter));
+      this.outline = await this.engine.outline(this.shape);
+      this.listener.outline(this.outline);
       mesh = await this.engine.prepare(this.indenter, depth_mm, this.nodes);
     } catch (error) {
       this.listener.status("No gel is meshed.", "ready");
@@ -178,7 +245,7 @@ export class Press {
     if (this.isStepping) return;
     this.isStepping = true;
     try {
-      while (this.mesh && (!isSame(this.at, this.target) || (this.sensor?.relaxes && this.isTouching))) {
+      while (this.mesh && (!isSame(this.at, this.target) || (this.relaxes && this.isTouching))) {
         await this.inTurn(() => this.stepOnce());
       }
     } catch (error) {
@@ -188,14 +255,18 @@ export class Press {
     }
   }
 
+  private get relaxes(): boolean {
+    return this.surrogate === undefined && !!this.sensor?.relaxes;
+  }
+
   private get isTouching(): boolean {
-    return (this.frame?.contact_mm2 ?? 0) > 0;
+    return !!this.frame?.force_n.some((force_n) => force_n !== 0);
   }
 
   private async stepOnce(): Promise<void> {
     if (!this.mesh) return;
     const isFree = !this.isTouching && this.at.depth_mm <= 0 && this.target.depth_mm <= 0;
-    const next = toward(this.at, this.target, isFree ? TRAVEL_IN_AIR_MM : TRAVEL_MM);
+    const next = toward(this.at, this.target, isFree ? Math.max(TRAVEL_IN_AIR_MM, this.travel_mm) : this.travel_mm);
     try {
       await this.stepTo(next);
       this.listener.status("Ready", "ready");
@@ -219,7 +290,9 @@ export class Press {
     // Time passes for materials that relax; a page that was asleep did not press meanwhile.
     const since_s = Math.min(0.1, (now - this.steppedAt) / 1000);
     this.steppedAt = now;
-    const frame = await this.engine.step(poseOf(next, this.mesh!.touch_mm), given_s ?? since_s);
+    const pose = poseOf(next, this.mesh!.touch_mm);
+    const placed = () => [{ shape: this.shape, gel_from_indenter: pose }, ...this.left.map(({ shape, gel_from_indenter }) => ({ shape, gel_from_indenter }))];
+    const frame = await (this.surrogate === undefined ? this.engine.step(pose, given_s ?? since_s) : this.engine.touch(this.surrogate, placed()));
     this.at = next;
     this.frame = frame;
     this.ends.push(performance.now());

@@ -1,6 +1,6 @@
 /** An engine that is asked in texts: `crates/app/engine`, wherever it works. */
 
-import type { DeskFrame, Engine, Frame, Line, Mesh, Offer, Outline, Pose, Sensor } from "./engine.ts";
+import type { DeskFrame, Engine, Frame, Line, Mesh, Offer, Outline, Placed, Pose, Sensor, Shape } from "./engine.ts";
 
 /** The arrays, in the order of their numbers. */
 export const ARRAYS = [
@@ -39,8 +39,8 @@ export abstract class RequestEngine implements Engine {
     return (await this.ask({ do: "add", file, text })) as Sensor;
   }
 
-  async outline(indenter: string): Promise<Outline> {
-    await this.ask({ do: "outline", indenter });
+  async outline(shape: Shape): Promise<Outline> {
+    await this.ask({ do: "outline", shape });
     return {
       corners_mm: this.numbers("outline_mm"),
       normals: this.numbers("outline_normals"),
@@ -58,9 +58,17 @@ export abstract class RequestEngine implements Engine {
     };
   }
 
-  async step(pose: Pose, since_s: number): Promise<Frame> {
+  step(pose: Pose, since_s: number): Promise<Frame> {
+    return this.frame({ do: "step", since_s, gel_from_indenter: pose });
+  }
+
+  touch(surrogate: string, bodies: Placed[]): Promise<Frame> {
+    return this.frame({ do: "touch", surrogate, bodies });
+  }
+
+  private async frame(request: object): Promise<Frame> {
     const started = performance.now();
-    const frame = (await this.ask({ do: "step", since_s, gel_from_indenter: pose })) as Frame;
+    const frame = (await this.ask(request)) as Frame;
     return {
       ...frame,
       took_ms: performance.now() - started,

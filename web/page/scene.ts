@@ -30,6 +30,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 import { Scale, colourOf } from "./colours.ts";
 import type { Frame, Mesh, Outline, Pose, Sensor } from "./engine.ts";
+import type { Left } from "./press.ts";
 
 /** How the gel is coloured. */
 export type Colouring = "pressure" | "von-mises" | "plain";
@@ -47,10 +48,10 @@ export class Scene {
     new BufferGeometry(),
     new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0, transparent: true, opacity: 0.92 }),
   );
-  private readonly indenter = new Drawn(
-    new BufferGeometry(),
-    new MeshStandardMaterial({ color: 0x8d99a6, roughness: 0.35, metalness: 0.2, transparent: true, opacity: 0.38, depthWrite: false }),
-  );
+  private readonly metal = new MeshStandardMaterial({ color: 0x8d99a6, roughness: 0.35, metalness: 0.2, transparent: true, opacity: 0.38, depthWrite: false });
+  private readonly indenter = new Drawn(new BufferGeometry(), this.metal);
+  /** Shapes that were left in the gel. */
+  private readonly others = new Group();
   /** The node that each drawn corner follows: a node at an edge has a corner for each side. */
   private nodes = new Uint32Array();
   private rest_mm: Float32Array = new Float32Array();
@@ -68,7 +69,7 @@ export class Scene {
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(-20, -40, 70);
     this.indenter.renderOrder = 2;
-    this.world.add(new HemisphereLight(0xffffff, 0x8090a0, 1.5), sun, this.surroundings, this.gel, this.indenter);
+    this.world.add(new HemisphereLight(0xffffff, 0x8090a0, 1.5), sun, this.surroundings, this.gel, this.indenter, this.others);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
   }
@@ -119,13 +120,24 @@ export class Scene {
     this.isStale = true;
   }
 
-  outline({ corners_mm, normals, triangles }: Outline): void {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(corners_mm, 3));
-    geometry.setAttribute("normal", new BufferAttribute(normals, 3));
-    geometry.setIndex(new BufferAttribute(triangles, 1));
+  outline(outline: Outline): void {
     this.indenter.geometry.dispose();
-    this.indenter.geometry = geometry;
+    this.indenter.geometry = geometryOf(outline);
+    this.isStale = true;
+  }
+
+  /** Shapes that stay where they are. */
+  left(shapes: Left[]): void {
+    for (const other of this.others.children) (other as Drawn).geometry.dispose();
+    const drawn = shapes.map(({ outline, gel_from_indenter }) => {
+      const other = new Drawn(geometryOf(outline), this.metal);
+      other.renderOrder = 2;
+      other.position.set(...gel_from_indenter.position_mm);
+      other.quaternion.set(...gel_from_indenter.rotation);
+      return other;
+    });
+    this.others.clear();
+    if (drawn.length) this.others.add(...drawn);
     this.isStale = true;
   }
 
@@ -154,7 +166,7 @@ export class Scene {
 
   frame(frame: Frame, pose: Pose, colouring: Colouring, magnified: number): void {
     const values = colouring === "von-mises" ? frame.node_von_mises_kpa : frame.node_pressure_kpa;
-    this.scale.take(values);
+    this.scale.take(colouring === "plain" ? frame.pressure_kpa : values);
     const { geometry } = this.gel;
     const [places, colours] = [geometry.getAttribute("position"), geometry.getAttribute("color")];
     const colour = new Color();
@@ -211,6 +223,14 @@ export class Scene {
     this.camera.updateProjectionMatrix();
     this.isStale = true;
   }
+}
+
+function geometryOf({ corners_mm, normals, triangles }: Outline): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(corners_mm, 3));
+  geometry.setAttribute("normal", new BufferAttribute(normals, 3));
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  return geometry;
 }
 
 /** The side that a triangle of the gel at rest looks to: two for each axis. */

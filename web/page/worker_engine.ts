@@ -1,6 +1,6 @@
 /** An engine in a thread of its own. */
 
-import type { DeskFrame, Engine, Frame, Line, Mesh, Offer, Outline, Pose, Sensor } from "./engine.ts";
+import type { DeskFrame, Engine, Frame, Line, Mesh, Offer, Outline, Placed, Pose, Sensor, Shape } from "./engine.ts";
 import { FIRST_NODES } from "./module.ts";
 import type { Answer, Call } from "./worker.ts";
 
@@ -44,14 +44,17 @@ export class WorkerEngine implements Engine {
   add(file: string, text: string): Promise<Sensor> {
     return this.call("add", file, text);
   }
-  outline(indenter: string): Promise<Outline> {
-    return this.call("outline", indenter);
+  outline(shape: Shape): Promise<Outline> {
+    return this.call("outline", shape);
   }
   prepare(indenter: string, depth_mm: number, max_nodes: number): Promise<Mesh> {
     return this.call("prepare", indenter, depth_mm, max_nodes);
   }
   step(pose: Pose, since_s: number): Promise<Frame> {
     return this.call("step", pose, since_s);
+  }
+  touch(surrogate: string, bodies: Placed[]): Promise<Frame> {
+    return this.call("touch", surrogate, bodies);
   }
   rest(): Promise<void> {
     return this.call("rest");

@@ -3,7 +3,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { deviation, nativeAnswers, sensorText, wasmEngine } from "./engines.mjs";
+import { readFileSync } from "node:fs";
+
+import { deviation, nativeAnswers, sensorText, surrogateFile, wasmEngine } from "./engines.mjs";
 
 /** Down and aside; anew: down, and tilted, in steps of a hand. */
 function requests(touch_mm) {
@@ -49,6 +51,32 @@ for (const indenter of ["sphere-25", "cube", "x", "ring", "triangle", "wedge", "
     assert.ok(worst.readings < 0.01 && worst.force < 0.01, JSON.stringify(worst));
   });
 }
+
+test("a surrogate with three shapes", async () => {
+  const engine = await wasmEngine();
+  const { indenters } = await engine.open("phystac.toml", sensorText);
+  await engine.keep(surrogateFile, readFileSync(surrogateFile));
+  const { touch_mm } = await engine.prepare("sphere-25", 2, 400);
+  const body = (name, x_mm, depth_mm) => ({
+    shape: indenters.find((indenter) => indenter.name === name).shape,
+    gel_from_indenter: { position_mm: [x_mm, 1, touch_mm - depth_mm], rotation: [0, 0, 0, 1] },
+  });
+  const bodies = [body("sphere-25", -10, 1), body("ring", 0, 0.5), body("cube", 10, 0.3)];
+  const expected = nativeAnswers(
+    [
+      { do: "open", file: "phystac.toml", text: sensorText },
+      { do: "prepare", indenter: "sphere-25", depth_mm: 2, max_nodes: 400 },
+      { do: "touch", surrogate: surrogateFile, bodies },
+    ],
+    [surrogateFile],
+  ).at(-1);
+  const found = await engine.touch(surrogateFile, bodies);
+  const off = deviation(found, expected);
+  assert.ok(off.readings < 1e-4 && off.force < 1e-4 && Math.abs(found.novelty - expected.novelty) < 1e-3, JSON.stringify(off));
+  const took_ms = [];
+  for (let frame = 0; frame < 60; frame++) took_ms.push((await engine.touch(surrogateFile, bodies)).took_ms);
+  console.log(`readings ${(100 * off.readings).toFixed(5)} %, median ${took_ms.sort((a, b) => a - b)[30].toFixed(2)} ms`);
+});
 
 test("errors are those of the native engine", async () => {
   const engine = await wasmEngine();

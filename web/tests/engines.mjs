@@ -19,12 +19,14 @@ export async function wasmEngine() {
   return ModuleEngine.of(readFileSync(wasmFile));
 }
 
-/** What the native program answers to requests. */
-export function nativeAnswers(requests) {
+/** What the native program answers to requests, with files that it stores first. */
+export function nativeAnswers(requests, files = []) {
   const input = requests.map((request) => JSON.stringify(request)).join("\n") + "\n";
-  const output = execFileSync(native, { input, maxBuffer: 1 << 28 }).toString();
+  const output = execFileSync(native, files, { input, maxBuffer: 1 << 28 }).toString();
   return output.trim().split("\n").map((line) => JSON.parse(line));
 }
+
+export const surrogateFile = join(root, "crates/twin/fast/built_in/phystac.safetensors");
 
 export const sensorText = readFileSync(join(root, "sensors/phystac.toml"), "utf8");
 

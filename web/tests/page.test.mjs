@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
 
-import { deviation, nativeAnswers, page as file, root, sensorText } from "./engines.mjs";
+import { deviation, nativeAnswers, page as file, root, sensorText, surrogateFile } from "./engines.mjs";
 
 const pictures = join(root, "target/web/pictures");
 const address = pathToFileURL(file).href;
@@ -307,6 +307,75 @@ test("wheel and fingers press and twist", async () => {
   await there(page);
   const { target } = await state(page);
   assert.ok(target.depth_mm < held.depth_mm && target.twist_deg > held.twist_deg, JSON.stringify(target));
+  await done(page);
+});
+
+test("a surrogate takes several shapes, and a link restores them", async () => {
+  const page = await opened();
+  const choose = async (id, value) => {
+    await page.selectOption(id, value);
+    await there(page);
+  };
+  const force_n = (found) => -found.frame.force_n[2];
+  await choose("#solver", "surrogate");
+  await aim(page, { x_mm: -8, y_mm: 0, depth_mm: 1 });
+  const one = await state(page);
+  assert.equal(one.surrogate, "phystac.safetensors");
+  assert.ok(one.frame.novelty > 0 && one.frame.novelty < 1, String(one.frame.novelty));
+  assert.ok(await page.isHidden("#cut"));
+  assert.ok(await page.isDisabled("#clear"));
+  await page.click("#leave");
+  await page.waitForFunction(() => window.twintac.state.n_left === 1, undefined, PATIENCE);
+  await there(page);
+  const left = await state(page);
+  assert.ok(left.target.depth_mm < 0 && Math.abs(force_n(left) / force_n(one) - 1) < 0.01, `${force_n(left)} N, ${force_n(one)} N`);
+  await choose("#indenter", "cube");
+  await aim(page, { x_mm: 8, y_mm: 1, depth_mm: 0.6 });
+  assert.ok(force_n(await state(page)) > 1.2 * force_n(one));
+  await page.screenshot({ path: join(pictures, "surrogate.png"), fullPage: true });
+
+  await page.click("#share");
+  await page.waitForFunction(() => location.hash.length > 10);
+  await there(page);
+  const shared = await state(page);
+  const other = await opened(await page.evaluate(() => location.hash));
+  await other.waitForFunction(() => window.twintac.state.n_left === 1 && window.twintac.state.target.x_mm === 8, undefined, PATIENCE);
+  await there(other);
+  const restored = await state(other);
+  assert.deepEqual([restored.surrogate, restored.n_left, restored.indenter], ["phystac.safetensors", 1, "cube"]);
+  assert.deepEqual([restored.frame.pressure_kpa, restored.frame.force_n], [shared.frame.pressure_kpa, shared.frame.force_n]);
+  await done(other);
+
+  await page.click("#clear");
+  await page.waitForFunction(() => window.twintac.state.n_left === 0, undefined, PATIENCE);
+  await choose("#solver", "elements");
+  const solved = await state(page);
+  assert.ok(solved.frame.converged && await page.isVisible("#cut") && await page.isHidden("#leave"));
+  await done(page);
+});
+
+test("a surrogate is that of the gel, or refused", async () => {
+  const page = await opened();
+  const give = (name, buffer) => page.setInputFiles("#file", { name, mimeType: "application/octet-stream", buffer });
+  const error = (text) => page.waitForFunction((text) => document.getElementById("error").textContent.includes(text), text, PATIENCE);
+  await page.selectOption("#solver", "surrogate");
+  await there(page);
+  await page.selectOption("#sensor", "phystac-tip.toml");
+  await page.waitForFunction(() => window.twintac.state.surrogate === "phystac-tip.safetensors", undefined, PATIENCE);
+  await there(page);
+  // That of another gel: the page goes on with the one that it had.
+  await give("mine.safetensors", readFileSync(surrogateFile));
+  await error("phystac");
+  await there(page);
+  assert.equal((await state(page)).surrogate, "phystac-tip.safetensors");
+  // A gel that the page has no surrogate of is solved.
+  await give("mine.toml", Buffer.from(sensorText.replace("size_mm = [34.0, 18.0, 8.5]", "size_mm = [34.0, 18.0, 8.0]")));
+  await page.waitForFunction(() => window.twintac.state.surrogate === undefined, undefined, PATIENCE);
+  await there(page);
+  assert.equal(await page.inputValue("#solver"), "elements");
+  await page.selectOption("#solver", "surrogate");
+  await error("twintac fast train");
+  assert.equal(await page.inputValue("#solver"), "elements");
   await done(page);
 });
 

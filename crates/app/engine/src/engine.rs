@@ -13,13 +13,16 @@ use crate::outline::outline;
 use crate::press::Press;
 use crate::request::{Offer, Refused, Reply, Request};
 use crate::sensor_reply::SensorReply;
+use crate::surrogate::Surrogate;
 
-/// The state of a page: its sensor, the pressed gel, stored files, and the connected sensor.
+/// The state of a page: its sensor, the pressed gel and its surrogate, stored files, and the
+/// connected sensor.
 #[derive(Default)]
 pub struct Engine {
     files: Files,
     sensor: Option<Arc<Sensor>>,
     press: Option<Press>,
+    surrogate: Option<Surrogate>,
     offer: Offer,
     desk: Option<Desk>,
     arrays: Arrays,
@@ -51,6 +54,7 @@ impl Engine {
 
     /// Stores a file that descriptions name.
     pub fn keep(&mut self, name: &str, bytes: &[u8]) {
+        self.surrogate = None; // it may be that file
         self.files.keep(name, bytes);
     }
 
@@ -89,7 +93,7 @@ impl Engine {
     fn reply(&mut self, request: &str, bytes: &[u8]) -> Result<Reply, EngineError> {
         match serde_json::from_str(request)? {
             Request::Keep { name } => {
-                self.files.keep(&name, bytes);
+                self.keep(&name, bytes);
                 Ok(Reply::Done {})
             }
             Request::Open { file, text } => {
@@ -102,10 +106,8 @@ impl Engine {
                 let sensor = indenter.added_to(self.sensor()?)?;
                 Ok(self.has_sensor(sensor))
             }
-            Request::Outline { indenter } => {
-                let sensor = self.sensor()?;
-                let gel = twintac_simulate::Gel::new(Arc::clone(sensor), Default::default());
-                let shape = gel.shape(&indenter)?.signed_distance_field(&sensor.surfaces)?;
+            Request::Outline { shape } => {
+                let shape = shape.signed_distance_field(&self.sensor()?.surfaces)?;
                 outline(shape.as_ref(), &mut self.arrays);
                 Ok(Reply::Done {})
             }
@@ -121,6 +123,22 @@ impl Engine {
             } => {
                 let press = self.press.as_mut().ok_or(EngineError::NoPress)?;
                 let frame = press.step(since_s, &gel_from_indenter, &mut self.arrays)?;
+                Ok(Reply::Frame(frame))
+            }
+            Request::Touch { surrogate, bodies } => {
+                let press = self.press.as_ref().ok_or(EngineError::NoPress)?;
+                let known = self.surrogate.take().filter(|known| known.file() == surrogate);
+                let known = match known {
+                    Some(known) => known,
+                    None => {
+                        let bytes = self.files.load(&surrogate)?;
+                        Surrogate::new(&surrogate, &bytes, self.sensor()?)?
+                    }
+                };
+                let frame = self
+                    .surrogate
+                    .insert(known)
+                    .touch(&bodies, press, &mut self.arrays)?;
                 Ok(Reply::Frame(frame))
             }
             Request::Rest {} => {
@@ -157,6 +175,7 @@ impl Engine {
             desk.set_sensor(&sensor);
         }
         self.sensor = Some(Arc::new(sensor));
+        self.surrogate = None;
         Reply::Sensor(Box::new(reply))
     }
 }

@@ -32,6 +32,20 @@ pub(crate) enum EngineError {
     /// The gel cannot be pressed in this way.
     #[error(transparent)]
     Simulate(#[from] twintac_simulate::SimulateError),
+    /// A stored file is missing.
+    #[error("{0}")]
+    File(#[from] std::io::Error),
+    /// The file is no surrogate.
+    #[error("{file}: {problem}")]
+    Surrogate {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The surrogate is that of another gel.
+    #[error(transparent)]
+    Mismatch(#[from] twintac_fast::FastGelMismatch),
     /// The shape is impossible.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),

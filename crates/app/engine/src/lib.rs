@@ -19,6 +19,9 @@
 //!   line that the page reads, or the program around the engine hands them over
 //!   ([`Engine::take_frame`]). The mean of the first 32 frames is its zero. [`Offer`] says what the
 //!   surrounding program provides.
+//! - With a surrogate of the gel (`twintac-fast`), several shapes press at once, without friction
+//!   and memory. The drawn gel is then only moved out of the shapes: a surrogate has pressures at
+//!   the taxels and the force, and no stress elsewhere.
 //! - A wrong request is answered by `{"error": "…"}` in the words of the command line, and leaves
 //!   the engine as it was.
 //!
@@ -36,6 +39,7 @@ mod outline;
 mod press;
 mod request;
 mod sensor_reply;
+mod surrogate;
 
 pub use arrays::{Array, Arrays};
 pub use engine::Engine;

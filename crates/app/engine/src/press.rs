@@ -12,10 +12,10 @@ use crate::arrays::{Array, Arrays};
 use crate::error::EngineError;
 use crate::lattice::places_mm;
 use crate::map::Map;
-use crate::request::{Frame, Prepare, Prepared};
+use crate::request::{Frame, Prepare, Prepared, Quality};
 
 /// Provenance of all numbers of a frame.
-const PROVENANCE: &str = "simulated";
+pub(crate) const PROVENANCE: &str = "simulated";
 
 /// Largest distance from the indenter at which a node counts as touched, mm.
 const TOUCHING_MM: f64 = 0.02;
@@ -26,6 +26,8 @@ pub(crate) struct Press {
     indenter: Box<dyn SignedDistance>,
     taxels: Vec<String>,
     map: Option<Map>,
+    /// Positions of the nodes of the gel at rest, mm.
+    rest_mm: Vec<DVec3>,
     /// Nodes that the indenter can touch, and the surface area of each, mm².
     top: Vec<(usize, f64)>,
 }
@@ -45,6 +47,7 @@ impl Press {
             indenter: shape.signed_distance_field(&sensor.surfaces)?,
             taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
             map: Map::of(sensor, Array::MapKpa),
+            rest_mm: mesh.nodes_mm.clone(),
             state,
         })
     }
@@ -59,7 +62,7 @@ impl Press {
         Prepared {
             n_nodes: mesh.nodes_mm.len(),
             n_tets: mesh.tets.len(),
-            touch_mm: self.state.touch_mm(),
+            touch_mm: self.touch_mm(),
         }
     }
 
@@ -102,16 +105,36 @@ impl Press {
             force_n: frame.force_n.to_array(),
             torque_n_mm: frame.torque_n_mm.to_array(),
             pressure_kpa,
-            contact_mm2: if frame.force_n == DVec3::ZERO {
-                0.0
-            } else {
-                contact_mm2
+            quality: Quality::Solved {
+                contact_mm2: if frame.force_n == DVec3::ZERO {
+                    0.0
+                } else {
+                    contact_mm2
+                },
+                converged: frame.converged,
+                iterations: frame.quality.iterations,
+                residual: frame.quality.residual,
             },
-            converged: frame.converged,
-            iterations: frame.quality.iterations,
-            residual: frame.quality.residual,
             provenance: PROVENANCE,
         })
+    }
+
+    /// Height of the indenter's origin at first contact with the middle of the gel, upright, mm.
+    pub(crate) fn touch_mm(&self) -> f64 {
+        self.state.touch_mm()
+    }
+
+    /// Writes the gel at rest, with its top nodes moved to other locations, mm, into the arrays.
+    /// Nothing is known about the stress.
+    pub(crate) fn draw_moved(&self, moved: impl Fn(DVec3) -> DVec3, arrays: &mut Arrays) {
+        let mut displacements_mm = vec![DVec3::ZERO; self.rest_mm.len()];
+        for &(node, _) in &self.top {
+            displacements_mm[node] = moved(self.rest_mm[node]) - self.rest_mm[node];
+        }
+        let none = vec![0.0; self.rest_mm.len()];
+        arrays.set_points(Array::DisplacementsMm, &displacements_mm);
+        arrays.set_numbers(Array::PressureKpa, &none);
+        arrays.set_numbers(Array::VonMisesKpa, &none);
     }
 
     pub(crate) fn rest(&mut self, arrays: &mut Arrays) {

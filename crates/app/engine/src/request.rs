@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use twintac_line::Serial;
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Shape};
 
 use crate::desk::DeskFrame;
 
@@ -29,10 +29,10 @@ pub(crate) enum Request {
         /// Its text, TOML.
         text: String,
     },
-    /// Makes the surface of an indenter for drawing.
+    /// Makes the surface of a shape for drawing.
     Outline {
-        /// The indenter's name.
-        indenter: String,
+        /// Its shape.
+        shape: Shape,
     },
     /// Meshes the gel for an indenter that can press anywhere on it.
     Prepare(Prepare),
@@ -42,6 +42,14 @@ pub(crate) enum Request {
         since_s: f64,
         /// The new pose.
         gel_from_indenter: Pose,
+    },
+    /// Presses several shapes at once, by the surrogate of the gel. The drawn gel is that of the
+    /// last mesh.
+    Touch {
+        /// The stored file of the surrogate.
+        surrogate: String,
+        /// The shapes. The depth and the torque of the answer are those of the first.
+        bodies: Vec<Placed>,
     },
     /// Removes the indenter: the gel is at rest, without any memory of before.
     Rest {},
@@ -73,6 +81,16 @@ pub(crate) struct Prepare {
     /// Most nodes of the mesh. A mesh that is refined at the indenter's rim has up to two thirds
     /// more.
     pub(crate) max_nodes: usize,
+}
+
+/// A shape at a pose.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Placed {
+    /// The shape, as an indenter of the sensor has it.
+    pub(crate) shape: Shape,
+    /// Its pose.
+    pub(crate) gel_from_indenter: Pose,
 }
 
 /// An answer.
@@ -127,16 +145,33 @@ pub(crate) struct Frame {
     pub(crate) torque_n_mm: [f64; 3],
     /// Pressure at the port of each taxel, kPa, in the order of the taxels.
     pub(crate) pressure_kpa: Vec<f64>,
-    /// Area of the gel's surface that the indenter touches, mm², measured at rest.
-    pub(crate) contact_mm2: f64,
-    /// Whether the solver converged: the forces are balanced.
-    pub(crate) converged: bool,
-    /// Newton iterations.
-    pub(crate) iterations: u32,
-    /// Residual: unbalanced forces divided by the load.
-    pub(crate) residual: f64,
+    /// How the frame was computed.
+    #[serde(flatten)]
+    pub(crate) quality: Quality,
     /// Provenance of the numbers.
     pub(crate) provenance: &'static str,
+}
+
+/// How a frame was computed, and how well.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(crate) enum Quality {
+    /// By finite elements.
+    Solved {
+        /// Area of the gel's surface that the indenter touches, mm², measured at rest.
+        contact_mm2: f64,
+        /// Whether the solver converged: the forces are balanced.
+        converged: bool,
+        /// Newton iterations.
+        iterations: u32,
+        /// Residual: unbalanced forces divided by the load.
+        residual: f64,
+    },
+    /// By the surrogate.
+    Surrogate {
+        /// Out-of-distribution score: above 1, the numbers may be wrong.
+        novelty: f32,
+    },
 }
 
 /// The answer to a wrong request.

@@ -4,11 +4,13 @@
 
 use serde_json::{Value, json};
 use twintac_engine::{Array, Engine};
+use twintac_fast::{Body, FastGel};
 use twintac_protocol::PressPath;
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::Pose;
 use twintac_simulate::{Gel, SimulateSettings};
 
+const SURROGATE: &[u8] = include_bytes!("../../../twin/fast/built_in/phystac.safetensors");
 const PHYSTAC: &str = include_str!("../../../../sensors/phystac.toml");
 
 fn ask(engine: &mut Engine, request: &Value) -> Value {
@@ -123,7 +125,8 @@ fn arrays_are_of_one_mesh_and_move_with_the_indenter() {
 fn what_is_drawn_is_the_shape() {
     let mut engine = opened();
     let radius_mm = 12.5;
-    ask(&mut engine, &json!({"do": "outline", "indenter": "sphere-25"}));
+    let shape = json!({"kind": "sphere", "radius_mm": radius_mm});
+    ask(&mut engine, &json!({"do": "outline", "shape": shape}));
     let (corners, _) = engine.arrays().numbers(Array::OutlineMm).as_chunks::<3>();
     let (triangles, _) = engine.arrays().indices(Array::OutlineTriangles).as_chunks::<3>();
     let at = |corner: u32| glam::Vec3::from(corners[corner as usize]);
@@ -178,4 +181,114 @@ fn errors_are_those_of_the_library_and_change_nothing() {
     assert_eq!(refused["error"], "there is no mesh yet: prepare a press first");
     // The sensor is unchanged.
     assert!(ask(&mut engine, &prepare("cube"))["n_nodes"].is_number());
+}
+
+fn keep(engine: &mut Engine, name: &str, bytes: &[u8]) {
+    let request = json!({"do": "keep", "name": name}).to_string();
+    assert_eq!(engine.answer(&request, bytes), "{}");
+}
+
+fn touch(bodies: &[(&str, [f64; 3])]) -> Value {
+    let bodies = bodies.iter().map(|(indenter, position_mm)| {
+        let pose = json!({"position_mm": position_mm, "rotation": [0.0, 0.0, 0.0, 1.0]});
+        let sensor = SensorFile::phystac().unwrap().sensor;
+        let found = sensor
+            .indenters
+            .iter()
+            .find(|found| found.name == *indenter)
+            .unwrap();
+        json!({"shape": found.shape, "gel_from_indenter": pose})
+    });
+    json!({"do": "touch", "surrogate": "phystac.safetensors", "bodies": bodies.collect::<Vec<_>>()})
+}
+
+#[test]
+fn several_shapes_press_as_by_the_surrogate() {
+    let mut engine = opened();
+    keep(&mut engine, "phystac.safetensors", SURROGATE);
+    let touch_mm = ask(&mut engine, &prepare("sphere-25"))["touch_mm"]
+        .as_f64()
+        .unwrap();
+    let placed = [
+        ("sphere-25", [-8.0, 0.0, touch_mm - 1.0]),
+        ("cube", [8.0, 1.0, touch_mm - 0.5]),
+    ];
+    let found = ask(&mut engine, &touch(&placed));
+    assert_eq!(found["provenance"], "simulated");
+    assert!(
+        (found["depth_mm"].as_f64().unwrap() - 1.0).abs() < 1e-9,
+        "{found}"
+    );
+
+    let sensor = SensorFile::phystac().unwrap().sensor;
+    let gel = Gel::new(std::sync::Arc::clone(&sensor), SimulateSettings::default());
+    let bodies = placed.map(|(name, position_mm)| {
+        let body = Body::new(gel.shape(name).unwrap(), &sensor.surfaces).unwrap();
+        (body, Pose::from_position(position_mm.into()))
+    });
+    let bodies = bodies.each_ref().map(|(body, pose)| (body, *pose));
+    let mut reader = FastGel::phystac().unwrap().reader();
+    let (mut pressures, mut wrench) = ([0.0; 8], [0.0; 6]);
+    reader.read(&bodies, &mut pressures, &mut wrench);
+    assert_eq!(found["pressure_kpa"], json!(pressures.map(f64::from)));
+    assert_eq!(
+        found["force_n"],
+        json!([0, 1, 2].map(|axis| f64::from(wrench[axis])))
+    );
+    assert_eq!(found["novelty"].as_f64().unwrap() as f32, reader.novelty(&bodies));
+    // Both have a force, and the drawn gel follows both down.
+    let alone = ask(&mut engine, &touch(&placed[..1]));
+    let force_n = |frame: &Value| -frame["force_n"][2].as_f64().unwrap();
+    assert!(force_n(&alone) > 0.05 && force_n(&found) > 1.2 * force_n(&alone));
+    ask(&mut engine, &touch(&placed));
+    let (rest, _) = engine.arrays().numbers(Array::RestMm).as_chunks::<3>();
+    let (moved, _) = engine.arrays().numbers(Array::DisplacementsMm).as_chunks::<3>();
+    for (sign, depth_mm) in [(-1.0, 1.0), (1.0, 0.5)] {
+        let on_side = rest.iter().zip(moved).filter(|(rest, _)| sign * rest[0] > 3.0);
+        let lowest = on_side.map(|(_, moved)| moved[2]).fold(0.0, f32::min);
+        assert!(
+            (-depth_mm - 0.02..-0.6 * depth_mm).contains(&lowest),
+            "{lowest} mm"
+        );
+    }
+    // The torque is about the origin of the first: straight below a ball it has none across.
+    let middle = ask(&mut engine, &touch(&[("sphere-25", [0.0, 0.0, touch_mm - 1.0])]));
+    for axis in 0..2 {
+        assert!(
+            middle["torque_n_mm"][axis].as_f64().unwrap().abs() < 0.3,
+            "{middle}"
+        );
+    }
+}
+
+#[test]
+fn a_surrogate_is_refused_for_another_gel_and_read_again_when_it_is_stored_again() {
+    let mut engine = opened();
+    ask(&mut engine, &prepare("sphere-25"));
+    let press = touch(&[("sphere-25", [0.0, 0.0, 8.0])]);
+    let missing = ask(&mut engine, &press);
+    assert_eq!(missing["error"], "drop `phystac.safetensors` on the page as well");
+    keep(&mut engine, "phystac.safetensors", SURROGATE);
+    assert!(ask(&mut engine, &press)["force_n"].is_array());
+    keep(&mut engine, "phystac.safetensors", b"torn");
+    let torn = ask(&mut engine, &press);
+    assert!(
+        torn["error"]
+            .as_str()
+            .unwrap()
+            .starts_with("phystac.safetensors: "),
+        "{torn}"
+    );
+    keep(&mut engine, "phystac.safetensors", SURROGATE);
+    let twisted = press.to_string().replace("0.0,1.0]", "0.0,2.0]");
+    let twisted = ask(&mut engine, &serde_json::from_str(&twisted).unwrap());
+    assert_eq!(twisted["error"], "`rotation` is 2; give a quaternion of length 1");
+    assert!(ask(&mut engine, &press)["force_n"].is_array());
+
+    let softer = PHYSTAC.replace("size_mm = [34.0, 18.0, 8.5]", "size_mm = [34.0, 18.0, 8.0]");
+    let request = json!({"do": "open", "file": "phystac.toml", "text": softer});
+    assert!(ask(&mut engine, &request)["error"].is_null());
+    ask(&mut engine, &prepare("sphere-25"));
+    let refused = ask(&mut engine, &press)["error"].as_str().unwrap().to_owned();
+    assert!(refused.contains("8.5"), "{refused}");
 }

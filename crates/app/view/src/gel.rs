@@ -182,12 +182,13 @@ mod tests {
             &json!({"do": "open", "file": "mine.toml", "text": text}),
         );
         assert_eq!(opened["indenters"].as_array().unwrap().len(), 2, "{opened}");
-        let mut highest = |indenter: &str| {
-            ask(&mut gel, &json!({"do": "outline", "indenter": indenter}));
+        let mut highest = |indenter: usize| {
+            let shape = &opened["indenters"][indenter]["shape"];
+            ask(&mut gel, &json!({"do": "outline", "shape": shape}));
             let corners = gel.engine.arrays().numbers(Array::OutlineMm);
             corners.iter().copied().fold(0.0, f32::max)
         };
-        let [small, large] = ["a", "b"].map(&mut highest);
+        let [small, large] = [0, 1].map(&mut highest);
         assert!(
             (small - 4.0).abs() < 0.5 && (large - 8.0).abs() < 0.5,
             "{small} mm, {large} mm"

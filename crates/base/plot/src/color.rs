@@ -58,7 +58,7 @@ impl Ink {
 /// Seventeen evenly spaced colours of the perceptually uniform scale *viridis* (van der Walt and
 /// Smith 2015, CC0). Linear interpolation between them stays within five units of 255 of the
 /// original.
-const VIRIDIS: [[u8; 3]; 17] = [
+pub(crate) const VIRIDIS: [[u8; 3]; 17] = [
     [68, 1, 84],
     [72, 24, 106],
     [71, 45, 123],

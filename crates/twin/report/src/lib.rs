@@ -11,12 +11,13 @@
 //!
 //! # How it works
 //!
-//! Each section of the page is a file of `sections`: the result and its comparisons, presses over
-//! time, pressure maps, errors over the gel, by taxel and by depth, recordings, variants, training
-//! losses, setup calibration, alignment, quality of the simulation, the sensor's drawing, and how
-//! the page was made. A section takes what it needs from the report and returns blocks (text,
-//! tables, figures) of `twintac-plot`. A section without data is left out. The page contains its
-//! pictures, fetches nothing and runs no script; the same data give the same bytes.
+//! Each section of the page is a file of `sections`: the result and its comparisons, presses to
+//! move through with a slider, presses over time, pressure maps, errors over the gel, by taxel and
+//! by depth, recordings, variants, training losses, setup calibration, alignment, quality of the
+//! simulation, the sensor's drawing, and how the page was made. A section takes what it needs from
+//! the report and returns blocks (text, tables, figures) of `twintac-plot`. A section without data
+//! is left out. The page contains its pictures and fetches nothing; its one script moves the
+//! slider's presses. The same data give the same bytes.
 //!
 //! Here data are only selected and drawn; `digitac` computes the errors when it evaluates a twin.
 //!

@@ -112,6 +112,35 @@ pub struct Table {
     pub rows: Vec<Row>,
 }
 
+/// Values of several sources at marks on a plan, frame by frame: a reader chooses a press and moves
+/// through it with a slider. It is left out if it has no presses.
+#[derive(Clone, Debug, Default)]
+pub struct Replay {
+    /// Unit of the values.
+    pub unit: String,
+    /// Corners of the plan, mm: the lowest and the highest.
+    pub bounds_mm: [[f64; 2]; 2],
+    /// Name and location of each mark, mm.
+    pub marks: Vec<(String, [f64; 2])>,
+    /// Name and provenance of each source.
+    pub sources: Vec<(String, Badge)>,
+    /// The presses.
+    pub presses: Vec<ReplayPress>,
+}
+
+/// A press of a [`Replay`].
+#[derive(Clone, Debug, Default)]
+pub struct ReplayPress {
+    /// Its name.
+    pub name: String,
+    /// Location, mm.
+    pub place_mm: [f64; 2],
+    /// Depth at each frame, mm.
+    pub depth_mm: Vec<f64>,
+    /// Values; NaN where one is missing; `[n_sources][n_frames][n_marks]`.
+    pub values: Vec<Vec<Vec<f64>>>,
+}
+
 /// An element of a page.
 #[derive(Clone, Debug)]
 pub enum Block {
@@ -125,6 +154,8 @@ pub enum Block {
     Figures(Vec<Figure>),
     /// A picture over the whole width.
     Wide(Box<Figure>),
+    /// Presses to move through.
+    Replay(Replay),
     /// A table.
     Table(Table),
     /// A heading, and a list of warnings.

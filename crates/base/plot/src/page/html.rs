@@ -2,6 +2,7 @@
 
 use super::block::{Badge, Block, Card, Cell, Fact, Figure, Paragraph, Span, Table};
 use super::contents::{Page, Section};
+use super::replay::{SCRIPT, replay};
 use crate::svg::{escape, svg};
 
 const STYLE: &str = include_str!("style.css");
@@ -37,12 +38,17 @@ pub(super) fn page(page: &Page) -> String {
             format!("<section id=\"{id}\">\n<h2>{title}</h2>\n{body}</section>\n")
         })
         .collect();
+    let script = if main.contains("<div class=\"replay\">") {
+        format!("<script>\n{SCRIPT}</script>\n")
+    } else {
+        String::new()
+    };
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body{class}>\n<header>\n{head}</header>\n\
-         <div class=\"columns\">\n{contents}<main>\n{main}</main>\n</div>\n</body>\n</html>\n"
+         <div class=\"columns\">\n{contents}<main>\n{main}</main>\n</div>\n{script}</body>\n</html>\n"
     )
 }
 
@@ -64,6 +70,7 @@ fn block(block: &Block) -> String {
         Block::Facts(shown) => facts(shown),
         Block::Figures(shown) => figures(shown),
         Block::Wide(shown) => figure(shown, " class=\"wide\""),
+        Block::Replay(shown) => replay(shown, badge),
         Block::Table(shown) => table(shown),
         Block::Warnings(heading, lines) => warnings(heading, lines),
         Block::Command(line) if line.is_empty() => String::new(),

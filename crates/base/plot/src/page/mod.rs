@@ -1,15 +1,16 @@
-//! A page of texts, tables and scenes as one HTML file: no scripts, no requests, and the same bytes
-//! for the same contents.
+//! A page of texts, tables and scenes as one HTML file: no requests, and the same bytes for the
+//! same contents. A page with a [`Replay`] has a script that moves it; other pages have none.
 
 mod block;
 mod contents;
 mod html;
+mod replay;
 
 use std::path::Path;
 
 use crate::PlotError;
 
-pub use block::{Badge, Block, Card, Cell, Fact, Figure, Paragraph, Row, Span, Table};
+pub use block::{Badge, Block, Card, Cell, Fact, Figure, Paragraph, Replay, ReplayPress, Row, Span, Table};
 pub use contents::{Page, Section};
 
 impl Page {

@@ -8,6 +8,7 @@ mod maps;
 mod parts;
 mod places;
 mod presses;
+mod replay;
 mod result;
 mod sensor;
 mod simulation;
@@ -35,6 +36,7 @@ pub fn page(report: &TwinReport<'_>) -> Page {
         warnings: summary::warnings(report),
         sections: vec![
             section("result", "Result", result::blocks(report)),
+            section("replay", "Move through the presses", replay::blocks(report)),
             section("presses", "Presses over time", presses::blocks(report)),
             section("maps", "Pressure maps", maps::blocks(report)),
             section("places", "Errors over the gel", places::blocks(report)),
