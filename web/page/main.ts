@@ -68,6 +68,8 @@ class Page {
   private indenterText: string | undefined;
   private isFromFile = false;
   private seconds = 0;
+  /** Of what people asked for, how much is not done yet. */
+  private attempts = 0;
   /** Surrogates that the engine keeps. */
   private readonly kept = new Set<string>();
 
@@ -218,11 +220,14 @@ class Page {
     const place = element("error");
     place.hidden = true;
     place.textContent = "";
+    this.attempts += 1;
     try {
       await work();
     } catch (error) {
       place.hidden = false;
       place.textContent = messageOf(error);
+    } finally {
+      this.attempts -= 1;
     }
   }
 
@@ -543,7 +548,7 @@ class Page {
   /** For scripts: the last frame, and where the indenter is. */
   get state() {
     const { at, target, nodes, median_ms, indenter, surrogate, left } = this.press;
-    return { at, target, nodes, median_ms, indenter, surrogate, n_left: left.length, frame: this.frame?.frame, deskFrame: this.deskFrame, n_nodes: this.mesh?.n_nodes, isThere: isSame(at, target) };
+    return { at, target, nodes, median_ms, indenter, surrogate, n_left: left.length, frame: this.frame?.frame, deskFrame: this.deskFrame, n_nodes: this.mesh?.n_nodes, isThere: isSame(at, target) && this.attempts === 0 };
   }
 
   /** For scripts: where a place of the gel is on the screen, px. */
