@@ -1,6 +1,7 @@
 //! Held-out presses that a reader moves through: sensor and twin at each frame.
 
 use digitac::PressEvaluation;
+use twintac_plot::fixed;
 use twintac_plot::page::{Block, Replay, ReplayPress};
 use twintac_recording::Provenance;
 
@@ -47,8 +48,9 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
 fn replayed(press: &PressEvaluation) -> ReplayPress {
     let frames: Vec<usize> = spread(press.time_s.len(), MOST_FRAMES).collect();
     let of = |readings: &[Vec<f64>]| frames.iter().map(|&frame| readings[frame].clone()).collect();
+    let [x, y] = press.place_mm.map(|at_mm| fixed(at_mm, 1));
     ReplayPress {
-        name: format!("{}, {}", press.name, press.indenter),
+        name: format!("{} at ({x}, {y}) mm", press.name),
         place_mm: press.place_mm,
         depth_mm: frames.iter().map(|&frame| press.depth_mm[frame]).collect(),
         values: vec![of(&press.measured_kpa), of(&press.predicted_kpa)],
