@@ -1,8 +1,8 @@
 //! Presses that a reader moves through, as HTML: data, a plan for each source, and a script.
 
-use std::fmt::Write;
+use serde_json::json;
 
-use super::block::{Badge, Replay, ReplayPress};
+use super::block::{Badge, Replay};
 use crate::color::VIRIDIS;
 use crate::svg::escape;
 
@@ -37,69 +37,40 @@ pub(super) fn replay(replay: &Replay, badge: impl Fn(&Badge) -> String) -> Strin
     )
 }
 
-/// The data as JSON.
+/// The data as a JSON text that cannot end its element. What is no number is `null`.
 fn data(replay: &Replay) -> String {
-    let presses: Vec<String> = replay.presses.iter().map(press).collect();
-    let marks = replay
-        .marks
-        .iter()
-        .map(|(name, at)| format!("[{},{}]", text(name), numbers(at)));
-    let [low, high] = &replay.bounds_mm;
-    format!(
-        "{{\"bounds\":[{},{}],\"unit\":{},\"marks\":[{}],\"colours\":{:?},\"presses\":[{}]}}",
-        numbers(low),
-        numbers(high),
-        text(&replay.unit),
-        marks.collect::<Vec<_>>().join(","),
-        VIRIDIS,
-        presses.join(","),
-    )
-}
-
-fn press(press: &ReplayPress) -> String {
-    let sources = press.values.iter().map(|frames| {
-        let frames = frames.iter().map(|values| numbers(values));
-        format!("[{}]", frames.collect::<Vec<_>>().join(","))
+    let presses = replay.presses.iter().map(|press| {
+        let values = press.values.iter();
+        json!({
+            "place": short(&press.place_mm),
+            "depth": short(&press.depth_mm),
+            "values": values
+                .map(|frames| frames.iter().map(|frame| short(frame)).collect())
+                .collect::<Vec<Vec<_>>>(),
+        })
     });
-    format!(
-        "{{\"place\":{},\"depth\":{},\"values\":[{}]}}",
-        numbers(&press.place_mm),
-        numbers(&press.depth_mm),
-        sources.collect::<Vec<_>>().join(","),
-    )
+    let data = json!({
+        "bounds": replay.bounds_mm,
+        "unit": replay.unit,
+        "marks": replay.marks,
+        "colours": VIRIDIS,
+        "presses": presses.collect::<Vec<_>>(),
+    });
+    data.to_string().replace('<', "\\u003c")
 }
 
-/// Numbers with three decimals at most; `null` for what is none.
-fn numbers(values: &[f64]) -> String {
-    let mut list = String::from("[");
-    for (index, value) in values.iter().enumerate() {
-        let comma = if index == 0 { "" } else { "," };
-        let _ = if value.is_finite() {
-            write!(list, "{comma}{}", (1000.0 * value).round() / 1000.0 + 0.0)
-        } else {
-            write!(list, "{comma}null")
-        };
-    }
-    list + "]"
-}
-
-/// A JSON text that cannot end its element.
-fn text(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' | '<' | '>' | '&' | '\0'..='\x1f' | '\u{2028}' | '\u{2029}' => {
-                let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
-            }
-            _ => quoted.push(letter),
-        }
-    }
-    quoted + "\""
+/// Numbers with three decimals at most.
+fn short(values: &[f64]) -> Vec<f64> {
+    values
+        .iter()
+        .map(|value| (1000.0 * value).round() / 1000.0)
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::ReplayPress;
 
     fn shown(replayed: &Replay) -> String {
         replay(replayed, |Badge(word)| word.clone())
@@ -120,7 +91,10 @@ mod tests {
             }],
         };
         let html = shown(&replayed);
-        assert!(html.contains("[1,2]") && html.contains("[[[null]]]"), "{html}");
+        assert!(
+            html.contains("[1.0,2.0]") && html.contains("[[[null]]]"),
+            "{html}"
+        );
         assert!(html.contains("&lt;i&gt;") && !html.contains("<b>"));
         assert_eq!(html.matches("</script>").count(), 1);
         assert!(
