@@ -78,8 +78,7 @@ pub(crate) struct Prepare {
     pub(crate) indenter: String,
     /// Largest depth of the presses, mm: the mesh is as fine as that needs.
     pub(crate) depth_mm: f64,
-    /// Most nodes of the mesh. A mesh that is refined at the indenter's rim has up to two thirds
-    /// more.
+    /// Most nodes of the mesh.
     pub(crate) max_nodes: usize,
 }
 

@@ -14,7 +14,7 @@ use twintac_work::WorkError;
 use crate::mixture::{Mixture, Simulated};
 
 /// Edges over a gel's height and over a contact's radius in the quick trial.
-const COARSE: f64 = 4.0;
+const COARSE: f64 = 3.0;
 
 /// Simulated trials of each shape in the paper.
 pub(super) const PAPER_SIMULATED: usize = 96;
@@ -60,7 +60,7 @@ impl Effort {
     pub(super) fn material_steps(self) -> u32 {
         match self {
             Self::Full => 30,
-            Self::Quick => 4,
+            Self::Quick => 1,
         }
     }
 

@@ -16,7 +16,7 @@ pub(crate) struct FastTrain {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Number of training presses [default: 2000].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(20..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(5..))]
     pub(crate) lessons: Option<u64>,
     /// Number of test presses of shapes that are not used for training [default: 100].
     #[arg(long, value_name = "N")]
