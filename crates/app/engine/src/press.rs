@@ -20,12 +20,12 @@ pub(crate) const PROVENANCE: &str = "simulated";
 /// Largest distance from the indenter at which a node counts as touched, mm.
 const TOUCHING_MM: f64 = 0.02;
 
-/// Too few edges over the radius of a rim to make any edge shorter: a rim can be anywhere on the
-/// gel, so no part of the mesh is refined for it, and frames take less than half the time.
-const EDGES_PER_ROUNDING: f64 = 0.1;
+/// No edges over the radius of a rim are asked for, however sharp it is: it can be anywhere on the
+/// gel, so refining the mesh for it would refine all of it.
+const EDGES_PER_ROUNDING: f64 = 0.0;
 
-/// Largest motion in one sub-step, mm: twice the solver's default. A fast drag then takes one
-/// sub-step a frame, with a quarter fewer iterations.
+/// Largest motion in one sub-step, mm: twice the solver's default, so that a fast drag takes one
+/// sub-step a frame.
 const MAX_TRAVEL_MM: f64 = 1.0;
 
 /// A meshed gel, and the indenter that presses it.
