@@ -45,17 +45,18 @@ fn setup() -> Setup {
     setup
 }
 
-/// The board, on a separate thread. The line loses ten bytes of every hundredth frame.
-fn run(mut port: TTYPort) -> JoinHandle<Sent> {
+/// The board, on a separate thread, which starts when it has heard the `n_commands` bytes that the
+/// computer sends first: what it sends before is in another form. The line loses ten bytes of every
+/// hundredth frame.
+fn run(mut port: TTYPort, n_commands: usize) -> JoinHandle<Sent> {
     thread::spawn(move || {
         let mut board = Microcontroller::new(LabClock::virtual_time(), Hertz::default(), &setup()).unwrap();
         let (mut reports, mut lost) = (Vec::new(), Vec::new());
-        let mut heard = [0; 256];
+        let mut commands = vec![0; n_commands];
+        port.set_timeout(PATIENCE).unwrap();
+        port.read_exact(&mut commands).unwrap();
+        board.hear(&commands);
         while board.clock().now_s() < RUN_S {
-            if port.bytes_to_read().unwrap() > 0 {
-                let n = port.read(&mut heard).unwrap();
-                board.hear(&heard[..n]);
-            }
             let (report, mut bytes) = board.round();
             reports.push(report);
             if report.sequence % 100 == 99 {
@@ -84,10 +85,9 @@ fn read(line: &str) -> (Vec<Reading>, LineSource, Sent) {
     let description = Description::read(folder.join(line)).unwrap();
     let start = Instant::now();
     let clock = Box::new(move || start.elapsed().as_micros() as u64);
-    // What the computer sends when it opens the port waits until the board runs.
     let port = SerialLine::open(&path, &description).unwrap();
     let mut source = LineSource::new(port, &description, N_TAXELS, clock).unwrap();
-    let board = run(board);
+    let board = run(board, description.serial.send.len());
     let mut readings = Vec::new();
     while !board.is_finished() {
         match source.next_frame(Duration::from_millis(100)) {
