@@ -125,7 +125,7 @@ def test_what_does_not_belong_together_is_refused() -> None:
     own = Sensor.load(ROOT / "sensors/strip4-gel-d.toml")
     with pytest.raises(ValueError, match="which is not built in: give its `gel` too"):
         TouchSensors(found, ["touch"], sensor=own)
-    with pytest.raises(ValueError, match="`sites` has `touch` twice"):
+    with pytest.raises(ValueError, match="the site of `touch` is named twice"):
         TouchSensors(found, ["touch", "touch"])
     with pytest.raises(ValueError, match="`n_worlds` is 0"):
         TouchSensors(found, ["touch"], n_worlds=0)

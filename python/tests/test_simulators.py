@@ -208,6 +208,155 @@ def test_blocks_rest_on_palms_in_newton() -> None:
         Sensors(model, ["hand"], shapes=["block"])
 
 
+def test_bodies_that_fixed_joints_join_in_newton_are_one_part() -> None:
+    pytest.importorskip("newton", reason="needs `pip install 'newton[sim]' torch`, which brings MuJoCo 3; kernels take a minute to compile")
+    import newton
+
+    from twintac.simulators.newton import Sensors
+
+    world = newton.ModelBuilder()
+    palm_there, thumb, finger = (world.add_link(label=label, mass=0.1) for label in ("palm", "thumb", "finger"))
+    joints = [world.add_joint_free(palm_there), world.add_joint_fixed(palm_there, thumb), world.add_joint_revolute(palm_there, finger)]
+    world.add_articulation(joints)
+    for body, label in ((palm_there, "palm"), (thumb, "thumb"), (finger, "finger")):
+        world.add_shape_sphere(body, radius=0.01, label=label)
+    world.add_site(thumb, label="touch")
+    builder = newton.ModelBuilder()
+    builder.replicate(world, 2)
+    sensors = Sensors(builder.finalize(device="cpu"), ["touch"], shapes=["palm", "thumb", "finger"])
+    assert sensors.scene.can_touch.tolist() == [[False, False, True]]
+
+
+def test_blocks_rest_on_palms_in_genesis() -> None:
+    pytest.importorskip("genesis", reason="needs `pip install genesis-world torch`; its kernels take minutes to compile")
+    import genesis
+
+    from twintac.simulators.genesis import Sensors
+
+    genesis.init(backend=genesis.cpu, precision="32", logging_level="warning")
+    scene = genesis.Scene(sim_options=genesis.options.SimOptions(dt=0.001), show_viewer=False)
+    board = scene.add_entity(genesis.morphs.Box(size=(0.02, 0.02, 0.002), pos=(0.0, 0.0, 0.1), fixed=True, contype=1, conaffinity=1))
+    density = MASS_KG / (0.012 * 0.012 * 0.02)
+    block = scene.add_entity(
+        genesis.morphs.Box(size=(0.012, 0.012, 0.02), pos=(0.0, 0.0, 0.1281), contype=2, conaffinity=2),
+        material=genesis.materials.Rigid(rho=density),
+    )
+    scene.build(n_envs=N_WORLDS)
+    sensors = Sensors(scene, board.links, geoms=block.geoms, position_mm=(0.0, 0.0, 10.0))
+    for _ in range(N_STEPS):
+        touch = sensors.push()
+        scene.step()
+    is_at_rest(touch.pressure_kpa, touch.wrench, beside(palm(AT_THE_ORIGIN), N_STEPS))
+    sensors.forget(slice(3, 4))
+    assert not sensors.memory.now.is_known[3].any() and sensors.memory.now.is_known[2].all()
+    with pytest.raises(ValueError, match="no shape that can touch"):
+        Sensors(scene, board.links, geoms=[])
+
+
+def test_a_block_rests_on_a_palm_in_maniskill() -> None:
+    """ManiSkill has one sub-scene on a CPU."""
+    pytest.importorskip("mani_skill", reason="needs `pip install mani_skill torch`")
+    import sapien
+    from mani_skill.envs.sapien_env import BaseEnv
+    from mani_skill.utils.structs.types import SimConfig
+
+    from twintac.simulators.maniskill import Sensors
+
+    class Palm(BaseEnv):  # type: ignore[misc, unused-ignore]
+        touch: Sensors
+
+        @property
+        def _default_sim_config(self) -> Any:
+            return SimConfig(sim_freq=1000, control_freq=1000)
+
+        def _load_agent(self, options: Any) -> None:
+            super()._load_agent(options, sapien.Pose([0.0, 0.0, 1.0]))
+
+        def _load_scene(self, options: Any) -> None:
+            self.palm = self._actor("palm", (0.01, 0.01, 0.001), 0.1, "build_kinematic")
+            self.block = self._actor("block", (0.006, 0.006, 0.01), 0.1281, "build")
+
+        def _actor(self, name: str, half_m: tuple[float, float, float], z_m: float, build: str) -> Any:
+            builder = self.scene.create_actor_builder()
+            builder.add_box_collision(half_size=half_m, density=MASS_KG / (0.012 * 0.012 * 0.02))
+            builder.initial_pose = sapien.Pose([0.0, 0.0, z_m])
+            made = getattr(builder, build)(name)
+            made.set_collision_group_bit(2, 1, 1)  # what shares a bit of this group does not collide
+            return made
+
+        def _initialize_episode(self, env_idx: Any, options: Any) -> None:
+            pass
+
+        def _after_reconfigure(self, options: Any) -> None:
+            self.touch = Sensors([self.palm], touching=[self.block], position_mm=(0.0, 0.0, 10.0))
+
+        def _before_simulation_step(self) -> None:
+            self.touch.push()
+
+        def evaluate(self) -> dict[str, Any]:
+            return {}
+
+    env = Palm(obs_mode="none", reward_mode="none", sim_backend="cpu", render_backend="none", robot_uids="panda")
+    env.reset(seed=1)
+    for _ in range(N_STEPS):
+        env.step(None)
+    touch = env.touch.output
+    expected = beside(palm(AT_THE_ORIGIN), N_STEPS)
+    is_at_rest(touch.pressure_kpa.expand(N_WORLDS, -1, -1), touch.wrench.expand(N_WORLDS, -1, -1), expected)
+    with pytest.raises(ValueError, match="no shape that can touch"):
+        Sensors([env.palm], touching=[])
+
+
+class Falling:
+    """A rigid object with the interface of Isaac Lab's, that falls without turning."""
+
+    def __init__(self, name: str, z_m: float, mass_kg: float | None = None) -> None:
+        import torch
+
+        self.name, self.mass_kg, self.device = name, mass_kg, "cpu"
+        self.body_link_pose_w = torch.tensor([5.0, -3.0, z_m, 1.0, 0.0, 0.0, 0.0]).repeat(N_WORLDS, 1, 1)
+        self.data = self.instantaneous_wrench_composer = self
+        self.speed = torch.zeros(N_WORLDS)
+        self.force_n = torch.zeros(N_WORLDS)
+
+    @property
+    def body_com_pos_w(self) -> Any:
+        return self.body_link_pose_w[..., :3]
+
+    def find_bodies(self, name: str) -> tuple[list[int], list[str]]:
+        return ([0], [self.name]) if name == self.name else ([], [])
+
+    def add_forces_and_torques(self, *, forces: Any, torques: Any, body_ids: list[int], is_global: bool) -> None:
+        assert is_global and body_ids == [0] and forces.shape == torques.shape == (N_WORLDS, 1, 3)
+        self.force_n = self.force_n + forces[:, 0, 2]
+
+    def fall(self, dt: float) -> None:
+        if self.mass_kg is not None:
+            self.speed = self.speed + dt * (self.force_n / self.mass_kg - 9.81)
+            self.body_link_pose_w[:, 0, 2] += dt * self.speed
+        self.force_n = 0.0 * self.force_n
+
+
+def test_blocks_rest_on_palms_by_the_interface_of_isaac_lab() -> None:
+    pytest.importorskip("torch", reason="needs PyTorch")
+    from twintac import arrays
+    from twintac.simulators.isaaclab import Sensors
+
+    hand, block = Falling("palm", 0.1), Falling("block", 0.1181, MASS_KG)
+    shape = arrays.centered(arrays.box((12.0, 12.0, 20.0)))
+    sensors = Sensors([(hand, "palm")], touching=[(block, "block", shape)])
+    for _ in range(N_STEPS):
+        touch = sensors.push(0.001)
+        carried_n = hand.force_n
+        hand.fall(0.001)
+        block.fall(0.001)
+    guided = AT_THE_ORIGIN.replace("<freejoint/>", '<joint type="slide" axis="0 0 1"/>')
+    is_at_rest(touch.pressure_kpa, touch.wrench, beside(palm(guided), N_STEPS))
+    assert carried_n.numpy() == pytest.approx(np.full(N_WORLDS, -WEIGHT_N), rel=0.01)
+    with pytest.raises(ValueError, match="expected one"):
+        Sensors([(hand, "finger")], touching=[(block, "block", shape)])
+
+
 def test_a_second_look_changes_nothing_and_time_that_goes_back_forgets() -> None:
     model = palm()
     found = scene_of(model, ["touch"], geoms=["block"])

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .. import Coupling, FastGel, Imperfection, Sensor, SensorBatch, SensorState, Twin
 from ._clock import Clock
+from ._declared import declared
 from ._geoms import Geoms, number_of
 from ._poses import multiply, turned, turned_back
 from ._push import Push
@@ -78,7 +79,9 @@ class TouchSensors:
     Args:
         model: the model.
         sites: names of the sites that are the frames of the gels, with z out of the board;
-            `add_sensor` makes such sites.
+            `add_sensor` makes such sites. Without it, the sensors are those that the MJCF declares
+            as user sensors at sites, with the name of the sensor's description before a slash, such
+            as `phystac/palm`; `update` then also writes the readings of one world to `sensordata`.
         sensor: the description of all sensors; PhysTac unless given. For a built-in sensor,
             `sensor` or `gel` alone is enough.
         gel: the surrogate of the gel of all sensors; PhysTac's unless given.
@@ -96,14 +99,15 @@ class TouchSensors:
         seed: seed of the sensor variation.
 
     Raises:
-        ValueError: for a site or geom that the model does not have, if no geom can touch, and for a
-            sensor, gel and twin that do not belong together.
+        ValueError: for a site or geom that the model does not have, if no geom can touch, for a
+            sensor, gel and twin that do not belong together, and for a model that declares no
+            sensor, or one of another dimension.
     """
 
     def __init__(
         self,
         model: mujoco.MjModel,
-        sites: Sequence[str],
+        sites: Sequence[str] | None = None,
         *,
         sensor: Sensor | None = None,
         gel: FastGel | None = None,
@@ -117,16 +121,23 @@ class TouchSensors:
         seed: int = 0,
     ) -> None:
         sensor, gel = _belonging(sensor, gel)
-        twice = {name for name in sites if list(sites).count(name) > 1}
-        if not len(sites) or twice:
-            raise ValueError(f"`sites` has `{twice.pop()}` twice" if twice else "`sites` has none, expected at least one")
         if n_worlds < 1:
             raise ValueError(f"`n_worlds` is {n_worlds}, expected 1 or more")
-        self._site = np.array([number_of(model, "site", name) for name in sites], int)
+        n_taxels = len(gel.ports_mm)
+        self._address: _Ints | None = None
+        if sites is None:
+            self._site, self._names, self._address = declared(model, sensor.name, n_taxels)
+        else:
+            self._site = np.array([number_of(model, "site", name) for name in sites], int)
+            self._names = list(sites)
+        if not len(self._site):
+            raise ValueError("`sites` has none, expected at least one")
+        twice = [name for place, name in enumerate(self._names) if self._site[place] in self._site[:place]]
+        if twice:
+            raise ValueError(f"the site of `{twice[0]}` is named twice, expected once")
         self._body: _Ints = model.site_bodyid[self._site].astype(int)
         self._worlds = Worlds(model, n_worlds)
         self._geoms = Geoms(model, self._worlds, geoms)
-        self._names = list(sites)
         self._batch = SensorBatch(
             gel,
             self._geoms.bodies,
@@ -148,7 +159,6 @@ class TouchSensors:
         # The parts of one rigid body do not touch each other.
         weld = model.body_weldid
         self._can_touch = weld[self._body][:, None] != weld[self._geoms.body][None, :]
-        n_taxels = len(gel.ports_mm)
         self._shown = _Shown(*(np.zeros((n_worlds, len(self._site), n), np.float32) for n in (n_taxels, n_taxels, 6, 2)))
 
     def __repr__(self) -> str:
@@ -211,6 +221,7 @@ class TouchSensors:
             raise ValueError(f"MuJoCo's force sensor `{self._unfelt_by}` does not feel what gels push with `update`: step within `with touch.pushing(data):`")
         touches = self._sense(data, is_updated=True)
         self._push.write(data, self._push.generalized(data, self._wrenches(data, touches, self._push.roots_m(data))))
+        self._tell(data)
         return self._shown.readings_kpa
 
     @contextmanager
@@ -243,6 +254,7 @@ class TouchSensors:
         others = applied.copy()
         applied[:, self._push.bodies] += self._wrenches(data, touches, self._push.middles_m(data))
         written = applied.copy()
+        self._tell(data)
         stays = np.zeros(applied.shape, bool)
         try:
             yield self._shown.readings_kpa
@@ -390,6 +402,13 @@ class TouchSensors:
         force_n, torque_n_m = turned(turn, on_gel[:, :3]), 1e-3 * turned(turn, on_gel[:, 3:])
         at_m = 1e-3 * (site_mm[world, sensor] + turn @ self._center_mm)
         return self._push.on_bodies(about_m, (force_n, torque_n_m, at_m), (world, self._body[sensor], self._geoms.body[geom]))
+
+    def _tell(self, data: Data) -> None:
+        """Writes the readings to `sensordata`, for sensors that the model declares. Those of a batch
+        cannot be written.
+        """
+        if self._address is not None and isinstance(data, mujoco.MjData):
+            data.sensordata[self._address] = self._shown.readings_kpa[0]
 
     def _rest(self, world: int) -> None:
         for sensor in self._sensors_of(world):

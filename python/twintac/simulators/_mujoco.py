@@ -9,8 +9,9 @@ import numpy as np
 from .. import FastGel, Shape, arrays
 from ..arrays._namespace import Array
 from ..mujoco._geoms import colliding, number_of
-from ..mujoco._shapes import HFIELD, MESH, PLANE, contents, surface_of
+from ..mujoco._shapes import HFIELD, MESH, contents, surface_of
 from ._scene import Places, Scene, scene
+from ._shapes import primitive
 
 
 def scene_of(
@@ -50,22 +51,12 @@ def scene_of(
 def _shape(model: mujoco.MjModel, geom: int) -> arrays.Shapes:
     """The shape of a geom, with the geom's origin."""
     kind, asset = int(model.geom_type[geom]), int(model.geom_dataid[geom])
-    a_mm, b_mm, c_mm = (1e3 * float(length_m) for length_m in model.geom_size[geom])
-    kinds = mujoco.mjtGeom
-    if kind == PLANE:
-        return arrays.plane()
     if kind in (MESH, HFIELD):
         corners_mm, triangles = surface_of(kind, contents(model, kind, asset))
         return arrays.mesh(Shape.surface(corners_mm, triangles))
-    if kind == kinds.mjGEOM_SPHERE:
-        return arrays.centered(arrays.ball(a_mm))
-    if kind == kinds.mjGEOM_BOX:
-        return arrays.centered(arrays.box((2.0 * a_mm, 2.0 * b_mm, 2.0 * c_mm)))
-    if kind == kinds.mjGEOM_CYLINDER:
-        return arrays.centered(arrays.cylinder(a_mm, 2.0 * b_mm))
-    if kind == kinds.mjGEOM_CAPSULE:
-        return arrays.centered(arrays.capsule(a_mm, 2.0 * (a_mm + b_mm)))
-    if kind == kinds.mjGEOM_ELLIPSOID:
-        return arrays.centered(arrays.ellipsoid((a_mm, b_mm, c_mm)))
-    name = model.geom(geom).name or str(geom)
-    raise ValueError(f"geom `{name}` is a {kinds(kind).name}, which sensors do not feel")
+    of_kind = mujoco.mjtGeom(kind).name
+    shape = primitive(of_kind.removeprefix("mjGEOM_"), model.geom_size[geom])
+    if shape is None:
+        name = model.geom(geom).name or str(geom)
+        raise ValueError(f"geom `{name}` is a {of_kind}, which sensors do not feel")
+    return shape

@@ -20,15 +20,17 @@ import torch
 import warp as wp
 
 from .. import FastGel, Shape, arrays
-from ._moment import Memory, Poses, Touch, begin, forget, moment
+from ._gels import Gels, placed
+from ._moment import Memory, Poses, Touch
 from ._scene import Places, scene
+from ._shapes import primitive
 
 __all__ = ["Memory", "Sensors", "Touch"]
 
 _Ints = npt.NDArray[np.intp]
 
 
-class Sensors:
+class Sensors(Gels):
     """Sensors in all worlds of a model. The worlds must be alike.
 
     Shapes that touch gels should not collide with the sensor's body: the body would carry them
@@ -38,8 +40,8 @@ class Sensors:
         model: the model.
         sites: labels of the sites, or patterns of labels with `*`; the same number in each world.
         shapes: labels of the shapes that can touch, or patterns; the same number in each world.
-            Shapes outside of all worlds can touch in each world. Shapes of the sensor's own body
-            never touch it.
+            Shapes outside of all worlds can touch in each world. Shapes of the sensor's own rigid
+            part never touch it.
         gel: the surrogate of the gel, as `arrays.load` takes it; PhysTac's unless given.
         friction: Coulomb's coefficient of every body on every gel.
         retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
@@ -66,18 +68,20 @@ class Sensors:
         own = np.unique(np.concatenate([[-1], body[site[0]], body[shape[0]]]))
         chosen = np.concatenate([site, shape], axis=1)
         local = np.searchsorted(own, body[chosen[0]])
+        # The world is the last one.
+        part_of = np.append(_parts(model), -1)[own]
         n_sites = site.shape[1]
         places = Places(
             site=np.arange(n_sites),
             geom=np.arange(shape.shape[1]),
             body_of_sensor=local[:n_sites],
             body_of_geom=local[n_sites:],
-            moves=own >= 0,
-            part_of=np.arange(len(own)),
+            moves=part_of >= 0,
+            part_of=part_of,
         )
         felt = [_shape(model, shape[:, place]) for place in range(shape.shape[1])]
         like = wp.to_torch(model.body_q)
-        self.scene = scene(places, felt, gel, friction, retardation_s, like)
+        found = scene(places, felt, gel, friction, retardation_s, like)
         # For each world, the indices of the corresponding bodies.
         in_worlds = np.full((len(chosen), len(own)), -1)
         for place, number in enumerate(local):
@@ -87,9 +91,7 @@ class Sensors:
         self._body = torch.tensor(in_worlds, device=like.device)
         self._middle = wp.to_torch(model.body_com)
         self._n_sites = n_sites
-        start_s = torch.zeros(len(chosen), device=like.device)
-        self.memory: Memory = begin(self.scene, self._poses(model.body_q), start_s)
-        """The state of the gels; it may be set to an earlier state."""
+        self._begin(found, self._poses(model.body_q))
 
     def push(self, state: newton.State, dt: float) -> Touch:
         """Reads the sensors, and adds the forces of the gels on bodies to `state.body_f`. Call
@@ -103,25 +105,10 @@ class Sensors:
             The output of the sensors.
         """
         with torch.no_grad():
-            poses = self._poses(state.body_q)
-            # Newton has no time of its own. Each call begins at time 0, so that times are not
-            # rounded.
-            start_s = torch.zeros_like(self.memory.time_s)
-            memory = self.memory._replace(time_s=start_s)
-            self.memory, touch = moment(self.scene, memory, poses, start_s + dt)
+            touch = self._step(self._poses(state.body_q), dt)
             pushed = self._body[:, self.scene.body].flatten()
             wp.to_torch(state.body_f).index_add_(0, pushed, touch.push.flatten(0, 1))
         return touch
-
-    def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
-        """Resets the gels.
-
-        Args:
-            worlds: indices of the worlds, or a mask; all worlds unless given.
-        """
-        chosen = torch.zeros_like(self.memory.time_s, dtype=torch.bool)
-        chosen[slice(None) if worlds is None else worlds] = True
-        self.memory = forget(self.memory, chosen)
 
     def _poses(self, body_q: Any) -> Poses:
         """Poses of sites, shapes and bodies, from those of bodies: position, m, and quaternion, w
@@ -135,9 +122,8 @@ class Sensors:
 
         rows, middle = rows_of(self._body_of), rows_of(self._body)
         turn = arrays.rotation_of(rows[..., 3:])
-        place_m = rows[..., :3] + (turn * self._local[..., None, :3]).sum(-1)
         own_turn = arrays.rotation_of(self._local[..., 3:])
-        turn = (turn[..., :, :, None] * own_turn[..., None, :, :]).sum(-2)
+        place_m, turn = placed(rows[..., :3], turn, self._local[..., :3], own_turn)
         lever_m = (arrays.rotation_of(middle[..., 3:]) * self._middle[self._body][..., None, :]).sum(-1)
         n = self._n_sites
         return Poses(
@@ -161,6 +147,19 @@ def _in_worlds(model: newton.Model, field: str, labels: list[str]) -> _Ints:
     return np.array([np.concatenate([row, in_all]) for row in rows]).reshape(n_worlds, -1)
 
 
+def _parts(model: newton.Model) -> _Ints:
+    """For each body, the first body of the rigid part that fixed joints make of bodies; -1 for what
+    is fixed to the world.
+    """
+    part_of = np.arange(model.body_count)
+    fixed = model.joint_type.numpy() == int(newton.JointType.FIXED)
+    ends = zip(model.joint_parent.numpy()[fixed], model.joint_child.numpy()[fixed])
+    for parent, child in ends:
+        first = part_of[parent] if parent >= 0 else -1
+        part_of[part_of == part_of[child]] = first
+    return part_of
+
+
 def _shape(model: newton.Model, numbers: _Ints) -> arrays.Shapes:
     """The shape, which is the same in all worlds, with Newton's origin."""
     first, label = int(numbers[0]), model.shape_label[int(numbers[0])]
@@ -168,21 +167,12 @@ def _shape(model: newton.Model, numbers: _Ints) -> arrays.Shapes:
     sources = {id(model.shape_source[int(number)]) for number in numbers}
     if (scales != scales[0]).any() or (kinds != kinds[0]).any() or len(sources) > 1:
         raise ValueError(f"shape `{label}` differs from world to world: they have to be alike")
-    kind, (a_mm, b_mm, c_mm) = newton.GeoType(int(kinds[0])), 1e3 * scales[0].astype(float)
-    if kind == newton.GeoType.PLANE:
-        return arrays.plane()
-    if kind == newton.GeoType.SPHERE:
-        return arrays.centered(arrays.ball(a_mm))
-    if kind == newton.GeoType.BOX:
-        return arrays.centered(arrays.box((2.0 * a_mm, 2.0 * b_mm, 2.0 * c_mm)))
-    if kind == newton.GeoType.CYLINDER:
-        return arrays.centered(arrays.cylinder(a_mm, 2.0 * b_mm))
-    if kind == newton.GeoType.CAPSULE:
-        return arrays.centered(arrays.capsule(a_mm, 2.0 * (a_mm + b_mm)))
-    if kind == newton.GeoType.ELLIPSOID:
-        return arrays.centered(arrays.ellipsoid((a_mm, b_mm, c_mm)))
+    kind, half_m = newton.GeoType(int(kinds[0])), scales[0].astype(float)
     if kind in (newton.GeoType.MESH, newton.GeoType.CONVEX_MESH):
         mesh = model.shape_source[first]
-        corners_mm = np.asarray(mesh.vertices, float) * 1e3 * scales[0]
+        corners_mm = np.asarray(mesh.vertices, float) * 1e3 * half_m
         return arrays.mesh(Shape.surface(corners_mm, np.asarray(mesh.indices).reshape(-1, 3)))
-    raise ValueError(f"shape `{label}` is a {kind.name}, which sensors do not feel")
+    shape = primitive(kind.name, half_m)
+    if shape is None:
+        raise ValueError(f"shape `{label}` is a {kind.name}, which sensors do not feel")
+    return shape

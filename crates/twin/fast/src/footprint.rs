@@ -21,9 +21,10 @@ const THINNEST: f64 = 0.4;
 /// The points of a grid that carry a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Footprint<'a> {
-    grid: &'a SurfaceGrid,
-    /// Network inputs of the grid's points. `[n_points * N_CHANNELS]`
-    inputs: &'a [f32],
+    /// Locations that carry, mm, each with the fraction of its area that carries.
+    places: &'a [(DVec2, f32)],
+    /// Spacing of the points, mm.
+    spacing_mm: f32,
     /// Depth of the deepest point inside the body, in units of the reach.
     deepest: f32,
     /// Height of the undeformed gel at that point, mm.
@@ -32,33 +33,40 @@ pub(crate) struct Footprint<'a> {
 
 impl<'a> Footprint<'a> {
     /// The footprint of bodies; `None` where nothing touches.
-    pub(crate) fn of(grid: &'a SurfaceGrid, inputs: &'a [f32]) -> Option<Self> {
-        let points = inputs.as_chunks::<N_CHANNELS>().0.iter().zip(&grid.height_mm);
-        let depths = points.map(|(point, height_mm)| (point[0] - 1.0, *height_mm));
-        let (deepest, height_mm) = depths.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        (deepest > 0.0).then_some(Self {
-            grid,
-            inputs,
+    ///
+    /// - `inputs`: network inputs of the grid's points. `[n_points * N_CHANNELS]`
+    /// - `places`: is overwritten with the locations that carry.
+    pub(crate) fn of(grid: &SurfaceGrid, inputs: &[f32], places: &'a mut Vec<(DVec2, f32)>) -> Option<Self> {
+        let points = inputs.as_chunks::<N_CHANNELS>().0;
+        let depths = points.iter().map(|point| point[0] - 1.0);
+        let deepest_of = depths.clone().zip(&grid.height_mm);
+        let (deepest, height_mm) = deepest_of.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        if deepest <= 0.0 {
+            return None;
+        }
+        let carries = |inside: f32| ((inside / deepest - CARRYING) / CHANGE + 0.5).clamp(0.0, 1.0);
+        places.clear();
+        places.extend(
+            grid.places()
+                .zip(depths.map(carries))
+                .filter(|(_, share)| *share > 0.0),
+        );
+        Some(Self {
+            places,
+            spacing_mm: grid.spacing_mm as f32,
             deepest,
-            height_mm,
+            height_mm: *height_mm,
         })
     }
 
     /// Locations that carry, mm, each with the fraction of its area that carries.
     pub(crate) fn places(&self) -> impl Iterator<Item = (DVec2, f32)> + '_ {
-        let points = self.inputs.as_chunks::<N_CHANNELS>().0;
-        let carries = |inside: f32| ((inside / self.deepest - CARRYING) / CHANGE + 0.5).clamp(0.0, 1.0);
-        self.grid
-            .places()
-            .zip(points)
-            .map(move |(at, point)| (at, carries(point[0] - 1.0)))
-            .filter(|(_, share)| *share > 0.0)
+        self.places.iter().copied()
     }
 
     /// Area that carries, mm².
     pub(crate) fn area_mm2(&self) -> f32 {
-        let spacing_mm = self.grid.spacing_mm as f32;
-        spacing_mm * spacing_mm * self.places().map(|(_, share)| share).sum::<f32>()
+        self.spacing_mm * self.spacing_mm * self.places().map(|(_, share)| share).sum::<f32>()
     }
 
     /// Remaining height of the gel under the deepest point, mm.

@@ -24,6 +24,8 @@ pub struct FastReader {
     /// Network inputs of the sensors that are evaluated together.
     inputs: Vec<f32>,
     scratch: Scratch,
+    /// The locations of the last footprint.
+    carrying: Vec<(DVec2, f32)>,
     ports_mm: Arc<[DVec2]>,
     grid: Arc<SurfaceGrid>,
     novelty: Arc<Novelty>,
@@ -40,6 +42,7 @@ impl FastGel {
             gel: Arc::clone(&self.gel),
             inputs: vec![0.0; engine.n_together() * points.n_inputs()],
             scratch: engine.scratch(),
+            carrying: Vec::new(),
             ports_mm: self.ports_mm.as_slice().into(),
             grid: Arc::new(self.layout.grid().clone()),
             novelty: Arc::new(self.novelty.clone()),
@@ -118,7 +121,8 @@ impl FastReader {
     pub(crate) fn footprint(&mut self, bodies: &[(&Body, Pose)]) -> Option<(Footprint<'_>, &[DVec2])> {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
-        let footprint = Footprint::of(&self.grid, &inputs[..N_CHANNELS * self.grid.len()])?;
+        let of_grid = &inputs[..N_CHANNELS * self.grid.len()];
+        let footprint = Footprint::of(&self.grid, of_grid, &mut self.carrying)?;
         Some((footprint, &self.ports_mm))
     }
 

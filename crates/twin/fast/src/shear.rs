@@ -74,9 +74,12 @@ impl Shear {
         for (port_mm, pressure_kpa) in ports_mm.iter().zip(pressure_kpa) {
             let felt = footprint.places().map(|(place_mm, share)| {
                 let way_mm = *port_mm - place_mm;
-                f64::from(share)
-                    * force_n.dot(way_mm.normalize_or_zero())
-                    * self.at(way_mm.length() / height_mm)
+                let length_mm = way_mm.length();
+                let per_mm = length_mm.recip();
+                if !per_mm.is_finite() {
+                    return 0.0;
+                }
+                f64::from(share) * force_n.dot(way_mm * per_mm) * self.at(length_mm / height_mm)
             });
             *pressure_kpa += (scale * felt.sum::<f64>()) as f32;
         }
