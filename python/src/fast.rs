@@ -24,9 +24,6 @@ pub(crate) const PROVENANCE: &str = "simulated";
 /// Most ports of a gel.
 const MOST_PORTS: usize = 1_000_000;
 
-/// Largest accepted distance of a port from the base of the gel, mm.
-const ROUNDING_MM: f64 = 1e-6;
-
 /// Most pressures of one call; they take a gigabyte.
 const MOST_PRESSURES: usize = 250_000_000;
 
@@ -107,33 +104,24 @@ impl FastGel {
     /// The same surrogate with its ports at other locations, for example closer together than the
     /// taxels.
     ///
-    /// - `places_mm`: locations on the base of the gel, x and y, mm; `[n_ports, 2]`.
+    /// - `places_mm`: locations on the base of the gel, x and y, mm; `[n_ports, 2]`. A port has to
+    ///   be within the gel there. With boxes cast into the gel, the taxels are the only locations.
     ///
     /// Raises `Error` for an array of another shape, for no location or more than a million, and
-    /// for a location that is not on the base of the gel.
+    /// for a location where the surrogate was not trained.
     fn with_ports(&self, py: Python<'_>, places_mm: Given<'_>) -> PyResult<Self> {
-        let [low, high] = self.gel.bounds_mm();
-        let expected = format!(
-            "[n_ports, 2], mm, from ({}, {}) to ({}, {})",
-            low.x, low.y, high.x, high.y
-        );
+        let expected = "[n_ports, 2], mm";
         let refused = |problem: String| unusable(py, "places_mm", &format!("{problem}, expected {expected}"));
-        let places_mm: Array<2> = places_mm.numbers("places_mm", &expected)?;
+        let places_mm: Array<2> = places_mm.numbers("places_mm", expected)?;
         let [n_ports, n_columns] = places_mm.shape;
         if n_columns != 2 || !(1..=MOST_PORTS).contains(&n_ports) {
             let problem = format!("has the shape {:?}", places_mm.shape);
             return Err(refused(format!("{problem}, at most {MOST_PORTS} ports")));
         }
         let places: Vec<glam::DVec2> = places_mm.rows().map(|row| [row[0], row[1]].into()).collect();
-        let is_there = |place: &&glam::DVec2| {
-            place.cmpge(low - ROUNDING_MM).all() && place.cmple(high + ROUNDING_MM).all()
-        };
-        if let Some(place) = places.iter().find(|place| !is_there(place)) {
-            return Err(refused(format!("has the place ({}, {})", place.x, place.y)));
-        }
-        Ok(Self {
-            gel: Arc::new(self.gel.with_ports(&places)),
-        })
+        let moved = self.gel.with_ports(&places);
+        let moved = moved.map_err(|error| unusable(py, "places_mm", &error.to_string()))?;
+        Ok(Self { gel: Arc::new(moved) })
     }
 
     /// Returns a reader for one sensor. Each thread needs its own reader.

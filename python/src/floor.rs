@@ -63,7 +63,8 @@ impl FloorMap {
     /// - `contact`: the contact.
     ///
     /// Returns the pressures, kPa, `[n_rows, n_columns]`, the row of smallest y first. Each value
-    /// is the mean over a disc as large as a port.
+    /// is the mean over a disc as large as a port; NaN where that is not within the gel, as in the
+    /// corners around a round one.
     ///
     /// Raises `Error` for a contact that another inverse has estimated.
     fn read<'py>(&self, py: Python<'py>, contact: &Contact) -> PyResult<Bound<'py, PyArray2<f32>>> {

@@ -1231,10 +1231,11 @@ class FastGel:
         """The same surrogate with its ports at other locations, for example closer together than the
         taxels.
 
-        - `places_mm`: locations on the base of the gel, x and y, mm; `[n_ports, 2]`.
+        - `places_mm`: locations on the base of the gel, x and y, mm; `[n_ports, 2]`. A port has to
+          be within the gel there. With boxes cast into the gel, the taxels are the only locations.
 
         Raises `Error` for an array of another shape, for no location or more than a million, and
-        for a location that is not on the base of the gel.
+        for a location where the surrogate was not trained.
         """
     def reader(self) -> FastReader:
         """Returns a reader for one sensor. Each thread needs its own reader."""
@@ -1670,11 +1671,11 @@ class Inverse:
         """Prepares maps of the pressure on the base of the gel under contacts, at more points than the
         taxels.
 
-        - `spacing_mm`: spacing of the grid of points, which is centred on the gel, mm. 0.5 mm makes
-          about 2,500 points for PhysTac.
+        - `spacing_mm`: spacing of the grid of points, mm. The grid is centred on the gel, and covers
+          the locations at which a port is within it. 0.5 mm makes about 2,000 points for PhysTac.
 
-        Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and
-        for an inverse without a surrogate.
+        Raises `Error` for a spacing that is not above 0 or makes more than ten million points, for
+        an inverse without a surrogate, and for a gel with boxes cast into it.
         """
 
 @final
@@ -1718,7 +1719,8 @@ class FloorMap:
         - `contact`: the contact.
 
         Returns the pressures, kPa, `[n_rows, n_columns]`, the row of smallest y first. Each value
-        is the mean over a disc as large as a port.
+        is the mean over a disc as large as a port; NaN where that is not within the gel, as in the
+        corners around a round one.
 
         Raises `Error` for a contact that another inverse has estimated.
         """

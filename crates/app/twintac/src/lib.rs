@@ -249,7 +249,7 @@ pub use twintac_dataset::{Dataset, DatasetPlan, FastSource, Shard, check_dataset
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
 pub use twintac_fast::{
-    Body, FastBatch, FastFileError, FastGel, FastGelMismatch, FastReader, Friction, Touch,
+    Body, FastBatch, FastFileError, FastGel, FastGelMismatch, FastReader, Friction, PortElsewhere, Touch,
 };
 #[cfg(feature = "fast")]
 pub use twintac_inverse::{

@@ -158,7 +158,7 @@ pub use friction::Friction;
 pub use judge::{GroupErrors, Judgement};
 pub use layout::finest_edge_mm;
 pub use lesson::{Lesson, LessonFrame, lesson_places_mm};
-pub use model::FastGel;
+pub use model::{FastGel, PortElsewhere};
 pub use read::FastReader;
 pub use taught::FastGelMismatch;
 pub use touch::Touch;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use thiserror::Error;
 use twintac_sensor::Sensor;
 use twintac_shape::{ShapeError, Solid};
 
@@ -132,12 +133,52 @@ impl FastGel {
     /// taxels': each pressure is averaged over a disc as large as a port. Ports on a regular grid
     /// share memory: thousands of them take a few MB. Where taxels reach over the gel's side,
     /// pressures at other locations are less exact than those of the taxels.
-    #[must_use]
-    pub fn with_ports(&self, places_mm: &[DVec2]) -> Self {
+    ///
+    /// # Errors
+    /// A location where it was not trained ([`Self::has_port_at`]).
+    pub fn with_ports(&self, places_mm: &[DVec2]) -> Result<Self, PortElsewhere> {
+        if let Some(place_mm) = places_mm.iter().find(|place_mm| !self.has_port_at(**place_mm)) {
+            return Err(PortElsewhere {
+                place_mm: *place_mm,
+                within_mm: self.port_bounds_mm(),
+            });
+        }
         let mut gel = self.clone();
         gel.ports_mm = places_mm.to_vec();
         gel.networks.taxels = None;
-        gel
+        Ok(gel)
+    }
+
+    /// Whether the pressure at a port with this center can be evaluated: it was trained where a
+    /// port is within the base of the gel, or at the taxels alone if boxes are cast into the gel.
+    #[must_use]
+    pub fn has_port_at(&self, place_mm: DVec2) -> bool {
+        let is_taxel = |port: &Port| port.position_mm.truncate().distance(place_mm) < 1e-9;
+        let is_trained = place_mm.is_finite() && !self.gel.has_inclusions();
+        self.ports.iter().any(is_taxel)
+            || (is_trained && self.gel.has_base_under(place_mm, self.port_radius_mm()))
+    }
+
+    /// Corners in plan of the area in which ports can be, mm: the lowest and the highest; `None` if
+    /// ports can be at the taxels alone.
+    #[must_use]
+    pub fn port_bounds_mm(&self) -> Option<[DVec2; 2]> {
+        let [low_mm, high_mm] = self.bounds_mm();
+        let radius_mm = self.port_radius_mm();
+        (!self.gel.has_inclusions()).then_some([low_mm + radius_mm, high_mm - radius_mm])
+    }
+
+    /// Radius of the ports on the base, mm. Where taxels reach over the gel's side, training
+    /// presses were evaluated up to the side.
+    fn port_radius_mm(&self) -> f64 {
+        let is_inside = |port: &Port| {
+            self.gel
+                .has_base_under(port.position_mm.truncate(), port.radius_mm)
+        };
+        match self.ports.first() {
+            Some(port) if self.ports.iter().all(is_inside) => port.radius_mm,
+            _ => 0.0,
+        }
     }
 
     /// Corners of the gel in plan, mm: the lowest and the highest.
@@ -153,6 +194,28 @@ impl FastGel {
     pub fn height_mm_at(&self, place_mm: DVec2) -> f64 {
         self.layout.grid().height_mm_at(place_mm)
     }
+}
+
+/// The error for a port where a surrogate was not trained.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the surrogate was not trained for a port at ({}, {}) mm, but {}", .place_mm.x, .place_mm.y, area(.within_mm.as_ref()))]
+pub struct PortElsewhere {
+    /// The center of the port.
+    pub place_mm: DVec2,
+    /// Corners in plan of the area in which ports can be, mm; `None` for the taxels alone.
+    pub within_mm: Option<[DVec2; 2]>,
+}
+
+fn area(within_mm: Option<&[DVec2; 2]>) -> String {
+    within_mm.map_or_else(
+        || "at the taxels alone, because boxes are cast into the gel".to_owned(),
+        |[low, high]| {
+            format!(
+                "where a port is within the gel, from ({}, {}) to ({}, {}) mm",
+                low.x, low.y, high.x, high.y
+            )
+        },
+    )
 }
 
 /// For each location, the number of its mirror image about a center across an axis; `None` if a

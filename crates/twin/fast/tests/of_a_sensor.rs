@@ -116,9 +116,9 @@ fn what_a_fast_gel_does_not_know_may_differ() {
 #[test]
 fn ports_that_were_moved_are_not_the_sensors() {
     let gel = FastGel::phystac().unwrap();
-    let moved = gel.with_ports(&[DVec2::ZERO]);
+    let moved = gel.with_ports(&[DVec2::ZERO]).unwrap();
     assert!(moved.check(&phystac()).is_err());
-    let back = moved.with_ports(gel.ports_mm());
+    let back = moved.with_ports(gel.ports_mm()).unwrap();
     assert_eq!(back.check(&phystac()), Ok(()));
 }
 
@@ -132,5 +132,33 @@ fn friction_is_on_one_gel() {
         ("phystac-tip", "phystac")
     );
     // The ports do not matter.
-    assert_eq!(friction.check(&gel.with_ports(&[DVec2::ZERO]).reader()), Ok(()));
+    let moved = gel.with_ports(&[DVec2::ZERO]).unwrap();
+    assert_eq!(friction.check(&moved.reader()), Ok(()));
+}
+
+#[test]
+fn ports_are_where_a_port_is_within_the_gel() {
+    let gel = FastGel::phystac().unwrap();
+    let [low, high] = gel.port_bounds_mm().unwrap();
+    assert_eq!([low, high], [DVec2::new(-16.0, -8.0), DVec2::new(16.0, 8.0)]);
+    for place_mm in [DVec2::ZERO, low, high, DVec2::new(low.x, high.y)] {
+        assert!(gel.with_ports(&[place_mm]).is_ok(), "{place_mm}");
+    }
+    for place_mm in [
+        DVec2::new(0.0, 8.1),
+        DVec2::new(-16.1, 0.0),
+        DVec2::new(0.0, f64::NAN),
+    ] {
+        let error = gel.with_ports(&[DVec2::ZERO, place_mm]).unwrap_err();
+        assert!(
+            error.to_string().contains("from (-16, -8) to (16, 8) mm"),
+            "{error}"
+        );
+    }
+    // Taxels that reach over the side of the fingertip were trained, and the base up to its side.
+    let tip = FastGel::phystac_tip().unwrap();
+    let moved = tip.with_ports(tip.ports_mm()).unwrap();
+    let [low, _] = tip.port_bounds_mm().unwrap();
+    assert!(moved.has_port_at(DVec2::new(low.x, 0.0)) && !moved.has_port_at(low - 0.1));
+    assert_eq!(moved.port_bounds_mm(), tip.port_bounds_mm());
 }

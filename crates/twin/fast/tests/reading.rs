@@ -101,7 +101,7 @@ fn taxels_that_reach_over_the_gels_side_are_read_together() {
     assert_eq!(read(&again, &there), own);
 
     // Other locations use the network of all locations; the force stays the same.
-    let (as_places_kpa, wrench) = read(&gel.with_ports(gel.ports_mm()), &there);
+    let (as_places_kpa, wrench) = read(&gel.with_ports(gel.ports_mm()).unwrap(), &there);
     assert_ne!(as_places_kpa, own.0);
     assert_eq!(wrench, own.1);
 
@@ -231,7 +231,7 @@ fn ports_may_be_anywhere_on_the_floor() {
     let there = [(&ball, Pose::from_position(DVec3::new(-3.0, 2.5, 6.5)))];
     let pressures = |places_mm: &[DVec2]| {
         let mut pressure_kpa = vec![0.0; places_mm.len()];
-        let mut reader = gel.with_ports(places_mm).reader();
+        let mut reader = gel.with_ports(places_mm).unwrap().reader();
         reader.read(&there, &mut pressure_kpa, &mut [0.0; 6]);
         pressure_kpa
     };

@@ -1,6 +1,7 @@
 //! Errors of contact estimation.
 
 use twintac_config::Problem;
+use twintac_fast::PortElsewhere;
 use twintac_shape::ShapeError;
 
 /// Why an [`Inverse`](crate::Inverse) cannot be made, or a frame cannot be used.
@@ -23,6 +24,14 @@ pub enum InverseError {
         /// Largest number of values in a table.
         most: f64,
     },
+    /// A map of the base of a gel, from a surrogate that was trained at its taxels alone.
+    #[error(
+        "there is no map of the base of this gel: boxes are cast into it, so its surrogate was trained at the taxels alone"
+    )]
+    NoFloor,
+    /// A port where the surrogate was not trained.
+    #[error(transparent)]
+    Port(#[from] PortElsewhere),
     /// There is no known shape.
     #[error("there is no known shape: at least one is needed")]
     NoShape,

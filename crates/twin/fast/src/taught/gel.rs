@@ -1,13 +1,17 @@
 //! The gel that a surrogate was trained on.
 
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use twintac_material::Model;
 use twintac_sensor::{Sensor, Shell};
-use twintac_shape::{Solid, TriangleSurface};
+use twintac_shape::{Solid, Surfaces, TriangleSurface};
 
 use super::mismatch::Difference;
 use super::same::same;
+
+/// Tolerance for rounding, mm.
+const ROUNDING_MM: f64 = 1e-6;
 
 /// Everything that presses of a gel depend on. Names do not count. Properties that a surrogate does
 /// not have do not count either: relaxation (the surrogate gives the instantaneous response), and
@@ -49,6 +53,29 @@ impl TaughtGel {
             shell: sensor.shell.clone(),
             inclusions_mm: inclusions.map(|chip| [chip.min_mm, chip.max_mm]).collect(),
         }
+    }
+
+    /// Whether a disc on the base is within the gel. A gel that is a surface of triangles is known
+    /// by its bounds alone.
+    pub(crate) fn has_base_under(&self, center_mm: DVec2, radius_mm: f64) -> bool {
+        let ways = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+        let mut rim_mm = ways.iter().map(|way| center_mm + radius_mm * *way);
+        match &self.solid {
+            TaughtSolid::Described(solid) => {
+                let none = Surfaces::new();
+                let base_mm = solid.bounds_mm(&none).0.z;
+                rim_mm.all(|at| solid.contains(at.extend(base_mm), ROUNDING_MM, &none))
+            }
+            TaughtSolid::Surface { low_mm, high_mm, .. } => {
+                let (low_mm, high_mm) = (low_mm.truncate() - ROUNDING_MM, high_mm.truncate() + ROUNDING_MM);
+                rim_mm.all(|at| at.cmpge(low_mm).all() && at.cmple(high_mm).all())
+            }
+        }
+    }
+
+    /// Whether boxes are cast into the gel.
+    pub(crate) fn has_inclusions(&self) -> bool {
+        !self.inclusions_mm.is_empty()
     }
 
     /// The differences between a sensor's gel and this one.

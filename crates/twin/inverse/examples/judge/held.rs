@@ -78,7 +78,7 @@ impl Judge {
         let places_mm = places_mm[taxels_mm.len()..].to_vec();
         Ok(Self {
             map: PreparedMap::new(&at, rectangle, &settings, &[])?,
-            floor: gel.with_ports(&places_mm).reader(),
+            floor: gel.with_ports(&places_mm)?.reader(),
             height_mm: high.z,
             taxels_mm,
             places_mm,
