@@ -1,7 +1,7 @@
 """Draws what the other examples compute, for the gallery: each runs as it stands, and a picture is
 made of its variables.
 
-    python draw.py docs/gallery [EXAMPLE ...]
+    python gallery.py docs/gallery [EXAMPLE ...]
 """
 
 import runpy
