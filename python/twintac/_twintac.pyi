@@ -1671,8 +1671,9 @@ class Inverse:
         """Prepares maps of the pressure on the base of the gel under contacts, at more points than the
         taxels.
 
-        - `spacing_mm`: spacing of the grid of points, mm. The grid is centred on the gel, and covers
-          the locations at which a port is within it. 0.5 mm makes about 2,000 points for PhysTac.
+        - `spacing_mm`: spacing of the grid of points, mm. The grid is centred on the gel, and
+          covers the locations at which a port is within it. 0.5 mm makes about 2,000 points for
+          PhysTac.
 
         Raises `Error` for a spacing that is not above 0 or makes more than ten million points, for
         an inverse without a surrogate, and for a gel with boxes cast into it.
