@@ -4,6 +4,7 @@ made of its variables.
     python gallery.py docs/gallery [EXAMPLE ...]
 """
 
+import argparse
 import runpy
 import sys
 from collections.abc import Callable
@@ -83,15 +84,21 @@ PICTURES: dict[str, Callable[[dict[str, Any], Axes], None]] = {
 
 
 def main() -> None:
-    folder, *chosen = sys.argv[1:]
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    for name in chosen or PICTURES:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="folder of the pictures")
+    parser.add_argument("examples", nargs="*", metavar="EXAMPLE", help=f"which to draw (default: all): {', '.join(PICTURES)}")
+    asked = parser.parse_args()
+    unknown = [name for name in asked.examples if name not in PICTURES]
+    if unknown:
+        parser.error(f"there is no picture of `{unknown[0]}`; there are {', '.join(PICTURES)}")
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    for name in asked.examples or PICTURES:
         names = runpy.run_path(str(HERE / f"{name}.py"))
         figure, axes = plt.subplots(figsize=(5.6, 3.5), layout="constrained")
         PICTURES[name](names, axes)
-        figure.savefig(Path(folder) / f"{name}.png", dpi=110)
+        figure.savefig(asked.folder / f"{name}.png", dpi=110)
         plt.close(figure)
-        print(f"wrote {folder}/{name}.png", file=sys.stderr)
+        print(f"wrote {asked.folder / name}.png", file=sys.stderr)
 
 
 if __name__ == "__main__":

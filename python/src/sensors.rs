@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -448,6 +448,18 @@ impl SensorBatch {
             Batch::Coupled(batch) => batch.ground_truth_kpa().collect(),
         })?;
         rows(py, readings_kpa, [self.n_sensors, self.n_taxels])
+    }
+
+    /// How near the bodies were to each sensor in the last step, `[n_sensors]`: 1 where one touches,
+    /// falling linearly to 0 where the nearest is 2 mm away or farther. Distances are those of
+    /// points of the gel's surface, which are 2 mm apart on PhysTac. No readings depend on it: it is
+    /// for rewards, and for sensors that measure proximity besides.
+    fn proximity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let proximity: Vec<f32> = self.batch.look(py, |batch| match batch {
+            Batch::Free(batch) => batch.proximity().collect(),
+            Batch::Coupled(batch) => batch.proximity().collect(),
+        })?;
+        Ok(PyArray1::from_vec(py, proximity))
     }
 
     /// The state of one sensor. A sensor that is set back to it continues with the same bits.

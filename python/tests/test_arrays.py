@@ -417,3 +417,16 @@ def test_distances_of_shapes_are_exact() -> None:
     assert ball.signed_distance_mm([[0.0, 0.0, 5.0], [0.0, 0.0, -1.0]]) == pytest.approx([-5.0, 1.0])
     for wrong in (np.zeros((2, 2)), np.zeros(3), np.full((1, 3), np.nan)):
         assert refusal(lambda: ball.signed_distance_mm(wrong)).field == "points_mm"
+
+
+def test_proximity_is_that_of_rust(gel: arrays.Gel) -> None:
+    random = np.random.default_rng(5)
+    poses = np.zeros((200, 7))
+    poses[:, :3] = random.uniform([-14.0, -7.0, 7.0], [14.0, 7.0, 12.0], (200, 3))
+    poses[:, 6] = 1.0
+    sensors = SensorBatch(FastGel.phystac(), [Body(Shape.sphere(5.0))], 200)
+    sensors.step(0.01, poses)
+    expected = sensors.proximity()
+    reading = arrays.read(gel, arrays.stack([arrays.ball(5.0)]), poses[:, None, :3].astype(np.float32))
+    assert arrays.proximity(reading.gap_mm) == pytest.approx(expected, abs=1e-5)
+    assert (expected == 0.0).any() and (expected == 1.0).any() and ((expected > 0.1) & (expected < 0.9)).any()

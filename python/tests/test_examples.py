@@ -9,7 +9,7 @@ from conftest import ROOT, run_example
 EXAMPLES = sorted(path.name for path in (ROOT / "python/examples").glob("*.py"))
 
 
-@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("grasp_by_touch.py", "press_a_ball.py", "train_from_csv.py")])
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("gallery.py", "grasp_by_touch.py", "press_a_ball.py", "train_from_csv.py")])
 def test_example_prints(name: str, tmp_path: Path) -> None:
     if "mjx" in name:
         pytest.importorskip("mujoco.mjx", reason="needs `pip install mujoco-mjx`")
@@ -21,6 +21,13 @@ def test_a_ball_is_read_and_drawn(tmp_path: Path) -> None:
     lines = run_example("press_a_ball.py", tmp_path).splitlines()
     assert len(lines) == 8 and all(line.endswith("kPa, simulated") for line in lines)
     assert (tmp_path / "ball.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_gallery_is_drawn_from_the_examples(tmp_path: Path) -> None:
+    run_example("gallery.py", tmp_path, "pictures", "find_a_contact", "imperfect_sensors")
+    pictures = sorted((tmp_path / "pictures").iterdir())
+    assert [picture.stem for picture in pictures] == ["find_a_contact", "imperfect_sensors"]
+    assert all(picture.read_bytes().startswith(b"\x89PNG") for picture in pictures)
 
 
 def test_training_makes_a_model_and_a_report(trained: Path) -> None:

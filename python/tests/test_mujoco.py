@@ -185,3 +185,16 @@ def test_quaternions_of_matrices_are_mujocos() -> None:
     assert np.abs((found * wanted).sum(-1)) == pytest.approx(np.ones(200))
     assert (quaternion_of(np.zeros((2, 3, 3))) == 0.0).all()
     assert np.isnan(quaternion_of(np.full((1, 3, 3), np.nan))).any()
+
+
+def test_what_comes_near_is_in_proximity() -> None:
+    found = model('<body name="thing" pos="0 0 1"><freejoint/><geom type="sphere" size="0.005" mass="1"/></body>')
+    touch, data = TouchSensors(found, ["touch"]), mujoco.MjData(found)
+    mujoco.mj_forward(found, data)
+    place_m, turn = gel_from_world(data)
+    for gap_mm, expected in ((5.0, 0.0), (1.5, 0.25), (0.5, 0.75), (-0.5, 1.0)):
+        data.qpos[:3] = place_m + turn @ np.array([0.0, 0.0, TOP_M + 0.005 + 1e-3 * gap_mm])
+        touch.reset()
+        mujoco.mj_forward(found, data)
+        touch.update(data)
+        assert touch.proximity == pytest.approx(np.array([[expected]]), abs=0.01), gap_mm

@@ -8,7 +8,7 @@ tuples of arrays, and no function keeps a state, so that `jit`, `vmap` and `grad
 copied to the host. On CPUs alone, `FastBatch` is several times faster.
 """
 
-from ._channels import contact, history, push
+from ._channels import contact, history, proximity, push
 from ._convert import convert
 from ._friction import Friction, Held, HeldReading, friction, held, step
 from ._gel import Gel, Layer, Network, load
@@ -80,6 +80,7 @@ __all__ = [
     "load",
     "mesh",
     "plane",
+    "proximity",
     "push",
     "read",
     "read_twin",

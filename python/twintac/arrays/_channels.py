@@ -1,7 +1,8 @@
-"""Signals that controllers and policies use beside pressures: whether there is contact, and the
-readings of the frames before.
+"""Signals that controllers and policies use beside pressures: whether there is contact, how near
+bodies are, and the readings of the frames before.
 """
 
+from ._contact import REACH_MM
 from ._namespace import Array, namespace, refuse
 
 
@@ -24,6 +25,20 @@ def contact(before: Array, value: Array, *, on: float, off: float) -> Array:
         raise refuse("off", f"is {off}", f"{on} at most, the threshold `on`")
     xp = namespace("value", value)
     return xp.where(before, value >= off, value > on)
+
+
+def proximity(gap_mm: Array) -> Array:
+    """How near the nearest body is to each sensor: 1 where it touches, falling linearly to 0 where it
+    is 2 mm away or farther, as `SensorBatch.proximity` in Rust.
+
+    Args:
+        gap_mm: distance of each body, mm, `[..., n_bodies]`: of a reading.
+
+    Returns:
+        `[...]`.
+    """
+    xp = namespace("gap_mm", gap_mm)
+    return xp.clip(1.0 - xp.min(gap_mm, axis=-1) * (1.0 / REACH_MM), 0.0, 1.0)
 
 
 def history(readings_kpa: Array, n_frames: int) -> Array:

@@ -33,6 +33,7 @@ class _Shown(NamedTuple):
     ground_truth_kpa: npt.NDArray[np.float32]
     wrench: npt.NDArray[np.float32]
     slip_mm_per_s: npt.NDArray[np.float32]
+    proximity: npt.NDArray[np.float32]
 
     def copy(self) -> "_Shown":
         return _Shown(*(own.copy() for own in self))
@@ -159,7 +160,7 @@ class TouchSensors:
         # The parts of one rigid body do not touch each other.
         weld = model.body_weldid
         self._can_touch = weld[self._body][:, None] != weld[self._geoms.body][None, :]
-        self._shown = _Shown(*(np.zeros((n_worlds, len(self._site), n), np.float32) for n in (n_taxels, n_taxels, 6, 2)))
+        self._shown = _Shown(*(np.zeros((n_worlds, len(self._site), n), np.float32) for n in (n_taxels, n_taxels, 6, 2, 1)))
 
     def __repr__(self) -> str:
         worlds = "one world" if self._worlds.n_worlds == 1 else f"{self._worlds.n_worlds} worlds"
@@ -197,6 +198,14 @@ class TouchSensors:
         n_sensors, 2]`: of several geoms the fastest one, and 0 if all stick.
         """
         return self._shown.slip_mm_per_s
+
+    @property
+    def proximity(self) -> npt.NDArray[np.float32]:
+        """How near the geoms were to each sensor at the last update, `[n_worlds, n_sensors]`: 1 where
+        one touches, falling linearly to 0 where the nearest is 2 mm away or farther
+        (`SensorBatch.proximity`).
+        """
+        return self._shown.proximity[..., 0]
 
     def update(self, data: Data) -> npt.NDArray[np.float32]:
         """Makes one time step: reads the poses of the geoms, and writes the forces of the gels on
@@ -346,7 +355,7 @@ class TouchSensors:
         # Of several that are assigned to one sensor, the last one stays: the fastest.
         order = np.argsort(np.linalg.norm(slips, axis=-1), kind="stable")
         slip_mm_per_s[touches.world[order], touches.sensor[order]] = slips[order]
-        found = (readings_kpa, self._batch.read_ground_truth(), wrench, slip_mm_per_s)
+        found = (readings_kpa, self._batch.read_ground_truth(), wrench, slip_mm_per_s, self._batch.proximity())
         self._shown = _Shown(*(new.reshape(old.shape) for new, old in zip(found, self._shown, strict=True)))
         for world, sensor in zip(*np.nonzero(unknown)):
             self._batch.rest(int(world) * len(self._site) + int(sensor))

@@ -74,14 +74,17 @@ impl ContactPoints {
         self.n_inputs
     }
 
-    /// Whether something touches, from the point nearest to a body: 1 where this point lies inside
-    /// or nearly so, 0 where it lies so far outside that the body does not reach into the gel
-    /// between the points either.
-    pub(crate) fn touched(&self, inputs: &[f32]) -> f32 {
-        let nearest = inputs
-            .iter()
-            .step_by(N_CHANNELS)
-            .fold(0.0, |most: f32, own| most.max(*own));
+    /// Proximity of the point that is nearest to a body: 1 at the body's surface, 0 where it is the
+    /// reach away or farther.
+    pub(crate) fn nearest(&self, inputs: &[f32]) -> f32 {
+        let of_points = inputs.iter().step_by(N_CHANNELS);
+        of_points.fold(0.0, |most: f32, own| most.max(*own))
+    }
+
+    /// Whether something touches, from the proximity of the nearest point: 1 where this point lies
+    /// inside or nearly so, 0 where it lies so far outside that the body does not reach into the
+    /// gel between the points either.
+    pub(crate) fn touched(&self, nearest: f32) -> f32 {
         let gap_mm = REACH_MM * (1.0 - nearest);
         let [near_mm, far_mm] = TOUCHED.map(|part| part * self.grids[0].spacing_mm);
         ((far_mm - gap_mm) / (far_mm - near_mm)).clamp(0.0, 1.0)

@@ -24,6 +24,8 @@ pub struct FastReader {
     /// Network inputs of the sensors that are evaluated together.
     inputs: Vec<f32>,
     scratch: Scratch,
+    /// Proximity of the bodies to each sensor of the last [`FastReader::read_many`].
+    proximity: Vec<f32>,
     /// The locations of the last footprint.
     carrying: Vec<(DVec2, f32)>,
     ports_mm: Arc<[DVec2]>,
@@ -42,6 +44,7 @@ impl FastGel {
             gel: Arc::clone(&self.gel),
             inputs: vec![0.0; engine.n_together() * points.n_inputs()],
             scratch: engine.scratch(),
+            proximity: Vec::new(),
             carrying: Vec::new(),
             ports_mm: self.ports_mm.as_slice().into(),
             grid: Arc::new(self.layout.grid().clone()),
@@ -84,7 +87,8 @@ impl FastReader {
         self.points.fill(bodies.iter().copied(), inputs);
         let all = std::slice::from_mut(wrench);
         self.engine.read(inputs, &mut self.scratch, pressure_kpa, all);
-        quieten(self.points.touched(inputs), pressure_kpa, wrench);
+        let touched = self.points.touched(self.points.nearest(inputs));
+        quieten(touched, pressure_kpa, wrench);
     }
 
     /// Out-of-distribution (OOD) score of a contact: 0 where nothing is near the gel, above 1 where
@@ -151,6 +155,14 @@ impl FastReader {
         self.read_from(bodies, touches, 0, ends, pressure_kpa, wrench);
     }
 
+    /// How near the bodies were to each sensor of the last [`Self::read_many`]: 1 where one touches,
+    /// falling linearly to 0 where the nearest is 2 mm away or farther. Distances are those of
+    /// points of the gel's surface, which are 2 mm apart on PhysTac. `[n_sensors]`
+    #[must_use]
+    pub fn proximity(&self) -> &[f32] {
+        &self.proximity
+    }
+
     /// The same for sensors whose first touch has the number `first`.
     pub(crate) fn read_from(
         &mut self,
@@ -168,6 +180,7 @@ impl FastReader {
             "a pressure for each taxel of each sensor"
         );
         assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
+        self.proximity.clear();
         let (n_together, n_inputs) = (self.engine.n_together(), self.points.n_inputs());
         let n_taxels = self.n_taxels().max(1);
         let numbers = pressure_kpa
@@ -185,7 +198,9 @@ impl FastReader {
             self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
             let sensors = pressure_kpa.chunks_exact_mut(n_taxels).zip(wrench.iter_mut());
             for (inputs, (pressure_kpa, wrench)) in inputs.chunks_exact(n_inputs).zip(sensors) {
-                quieten(self.points.touched(inputs), pressure_kpa, wrench);
+                let nearest = self.points.nearest(inputs);
+                self.proximity.push(nearest.min(1.0));
+                quieten(self.points.touched(nearest), pressure_kpa, wrench);
             }
         }
     }

@@ -393,3 +393,26 @@ fn numbers_that_are_none_are_not_read() {
     let error = FastGel::from_bytes(&bytes).unwrap_err().to_string();
     assert!(error.contains("numbers that are not finite"), "{error}");
 }
+
+#[test]
+fn proximity_rises_from_the_reach_to_the_surface() {
+    let (gel, _) = gel(1);
+    let (bodies, mut reader) = ([ball()], gel.reader());
+    // Over a point of the grid. The gel is 8.5 mm high; a ball stands on its origin.
+    let gaps_mm = [3.0, 2.0, 1.5, 1.0, 0.5, 0.0, -1.0];
+    let touches: Vec<Touch> = gaps_mm
+        .iter()
+        .map(|gap_mm| Touch {
+            body: 0,
+            gel_from_body: Pose::from_position(DVec3::new(0.0, 0.0, 8.5 + gap_mm)),
+        })
+        .collect();
+    let ends: Vec<usize> = (1..=gaps_mm.len()).chain([gaps_mm.len()]).collect();
+    let (mut pressure_kpa, mut wrench) = (vec![0.0; 8 * ends.len()], vec![[0.0; 6]; ends.len()]);
+    reader.read_many(&bodies, &touches, &ends, &mut pressure_kpa, &mut wrench);
+    let expected = [0.0, 0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 0.0];
+    assert_eq!(reader.proximity().len(), expected.len());
+    for (found, expected) in reader.proximity().iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-5, "{:?}", reader.proximity());
+    }
+}

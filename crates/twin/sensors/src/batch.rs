@@ -210,6 +210,14 @@ impl SensorBatch {
         self.chunks.iter().flat_map(Chunk::ground_truth_kpa)
     }
 
+    /// How near the bodies were to each sensor in the last step
+    /// ([`FastReader::proximity`](twintac_fast::FastReader::proximity)). `[n_sensors]`
+    pub fn proximity(&self) -> impl Iterator<Item = f32> + '_ {
+        self.chunks
+            .iter()
+            .flat_map(|chunk| chunk.gel().proximity().iter().copied())
+    }
+
     /// Resets the gel and the read-out of one sensor to rest. Its deviations stay.
     ///
     /// # Panics

@@ -114,6 +114,11 @@ impl CoupledBatch {
         self.batch.ground_truth_kpa()
     }
 
+    /// [`SensorBatch::proximity`].
+    pub fn proximity(&self) -> impl Iterator<Item = f32> + '_ {
+        self.batch.proximity()
+    }
+
     /// [`SensorBatch::rest`].
     ///
     /// # Panics
