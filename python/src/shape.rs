@@ -17,6 +17,9 @@ use crate::long_call::long_call;
 use crate::pickle::{Kept, Reduced, reduced};
 use crate::pose::Pose;
 
+/// Smallest size of a surface along each axis, mm.
+const SMALLEST_MM: f64 = 0.1;
+
 /// A rigid shape that presses the gel. `edge_radius_mm` rounds every convex edge and moves no face.
 /// Prismatic shapes have their profile in the xy plane and stand on z = 0. All lengths are in mm.
 ///
@@ -193,8 +196,8 @@ impl Shape {
     /// - `triangles`: indices of the three vertices of each triangle, counter-clockwise seen from
     ///   outside; `[n_triangles, 3]`.
     ///
-    /// Raises `Error` for arrays of another shape, for an index without a vertex, and for a surface
-    /// that is not closed.
+    /// Raises `Error` for arrays of another shape, for an index without a vertex, for a surface that
+    /// is not closed, and for one of less than 0.1 mm along an axis, as lengths in metres make it.
     #[staticmethod]
     fn surface(py: Python<'_>, vertices_mm: Given<'_>, triangles: Given<'_>) -> PyResult<Self> {
         let vertices_mm: Array<2> = vertices_mm.numbers("vertices_mm", "[n_vertices, 3], mm")?;
@@ -223,6 +226,19 @@ impl Shape {
         let triangles = triangles.collect::<PyResult<Vec<[DVec3; 3]>>>()?;
         let surface = TriangleSurface::from_triangles(&triangles);
         let surface = surface.map_err(|error| unusable(py, "triangles", &error.to_string()))?;
+        let corners = surface.vertices_mm().iter();
+        let high_mm = corners
+            .clone()
+            .fold(DVec3::NEG_INFINITY, |high, at| high.max(*at));
+        let size_mm = high_mm - corners.fold(DVec3::INFINITY, |low, at| low.min(*at));
+        if size_mm.min_element() < SMALLEST_MM * (1.0 - 1e-6) {
+            let [x, y, z] = size_mm.to_array();
+            let problem = format!(
+                "make a surface of {x:.3e} × {y:.3e} × {z:.3e} mm, expected {SMALLEST_MM} mm or more along each \
+                 axis; if they are in metres, multiply them by 1000"
+            );
+            return Err(unusable(py, "vertices_mm", &problem));
+        }
         Self::of_surface(py, surface)
     }
 

@@ -430,3 +430,28 @@ def test_proximity_is_that_of_rust(gel: arrays.Gel) -> None:
     reading = arrays.read(gel, arrays.stack([arrays.ball(5.0)]), poses[:, None, :3].astype(np.float32))
     assert arrays.proximity(reading.gap_mm) == pytest.approx(expected, abs=1e-5)
     assert (expected == 0.0).any() and (expected == 1.0).any() and ((expected > 0.1) & (expected < 0.9)).any()
+
+
+def test_what_is_behind_the_sensor_does_not_press_it(gel: arrays.Gel) -> None:
+    kinds = [
+        (arrays.ball(5.0), Shape.sphere(5.0), 10.0),
+        (arrays.box((60.0, 60.0, 60.0)), Shape.box((60.0, 60.0, 60.0), 0.0), 60.0),
+        (arrays.box((1000.0, 1000.0, 40.0)), Shape.box((1000.0, 1000.0, 40.0), 0.0), 40.0),
+        (arrays.cylinder(10.0, 30.0, 0.5), Shape.cylinder(10.0, 30.0, 0.5), 30.0),
+        (arrays.ellipsoid((8.0, 6.0, 5.0)), None, 10.0),
+        (arrays.plane(), None, 0.0),
+    ]
+    reader = FastGel.phystac().reader()
+    for own, shape, height_mm in kinds:
+        for tilt in (0.0, 0.1, 0.26):
+            quaternion = np.array([0.0, np.sin(0.5 * tilt), 0.0, np.cos(0.5 * tilt)])
+            rotation = np.asarray(arrays.rotation_of(quaternion))
+            for behind_mm in (1.0, 5.0, 20.0, 1000.0):
+                place_mm = np.array([0.0, 0.0, -behind_mm]) - rotation @ np.array([0.0, 0.0, height_mm])
+                poses = place_mm[None].astype(np.float32), rotation[None].astype(np.float32)
+                reading = arrays.read(gel, arrays.stack([own]), *poses)
+                assert not reading.pressure_kpa.any() and not reading.wrench.any(), (height_mm, tilt, behind_mm)
+                assert arrays.proximity(reading.gap_mm) == 0.0
+                if shape is not None:
+                    touching = [(Body(shape), Pose(tuple(place_mm), tuple(quaternion)))]
+                    assert not reader.read(touching)[0].any()

@@ -2,6 +2,8 @@
 description match.
 """
 
+from typing import Any
+
 import mujoco
 import mujoco.batch
 import numpy as np
@@ -197,3 +199,45 @@ def test_a_floor_holds_what_slides_over_it(floor: str) -> None:
     normal_n, along_n = float(touch.wrench[0, 0, 2]), float(touch.wrench[0, 0, 0])
     assert normal_n < -1.0
     assert along_n == pytest.approx(0.5 * normal_n, rel=0.05)
+
+
+HAND = """
+<mujoco><option timestep="0.001"/><worldbody>
+  <geom name="floor" type="{floor}" size="0.5 0.5 0.02" pos="0 0 {floor_m}"/>
+  <body name="hand" pos="0 0 {height_m}" euler="0 {tilt} 0"><freejoint/>
+    <geom name="board" type="box" size="0.017 0.009 0.001" pos="0 0 -0.001" mass="0.2"/>
+    <body name="finger" pos="0 0 -0.01"><joint axis="0 1 0"/><geom name="finger" type="box" size="0.03 0.03 0.004" mass="0.1"/></body></body>
+  <body name="above" pos="0 0 1"><freejoint/><geom name="above" type="sphere" size="0.01" mass="0.1"/></body>
+</worldbody>{more}</mujoco>"""
+
+
+def hand(**options: object) -> Any:
+    filled = {"floor": "plane", "floor_m": 0.0, "height_m": 0.04, "tilt": 0, "more": "", **options}
+    spec = mujoco.MjSpec.from_string(HAND.format(**filled))
+    add_sensor(spec, Sensor.phystac(), body="hand", name="palm")
+    return spec.compile()
+
+
+@pytest.mark.parametrize("tilt", [0, 10, -15])
+@pytest.mark.parametrize(("floor", "floor_m"), [("plane", 0.0), ("box", -0.02)])
+def test_what_is_behind_a_sensor_does_not_press_it(floor: str, floor_m: float, tilt: int) -> None:
+    for height_m in (0.02, 0.03, 0.04, 0.06):
+        model = hand(floor=floor, floor_m=floor_m, tilt=tilt, height_m=height_m)
+        touch, data = TouchSensors(model, ["palm"]), mujoco.MjData(model)
+        mujoco.mj_step1(model, data)
+        assert not touch.update(data).any() and not touch.wrench.any(), height_m
+
+
+def test_bodies_that_mujoco_does_not_collide_do_not_touch() -> None:
+    def can_touch(model: Any, **options: Any) -> list[str]:
+        touch = TouchSensors(model, ["palm"], **options)
+        return [model.geom(int(number)).name for number, can in zip(touch._geoms.number, touch._can_touch[0]) if can]
+
+    assert can_touch(hand()) == ["floor", "above"]
+    # What is named touches, also a child.
+    assert can_touch(hand(), geoms=["finger", "above"]) == ["finger", "above"]
+    excluded = hand(more='<contact><exclude body1="above" body2="hand"/><exclude body1="hand" body2="finger"/></contact>')
+    assert can_touch(excluded) == ["floor"]
+    assert can_touch(excluded, geoms=["floor", "finger"]) == ["floor"]
+    unfiltered = hand(more='<option><flag filterparent="disable"/></option>')
+    assert can_touch(unfiltered) == ["floor", "finger", "above"]

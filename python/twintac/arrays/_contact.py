@@ -2,13 +2,17 @@
 
 from typing import Any, NamedTuple
 
-from ._distance import distance_mm
+from ._distance import distance_mm, is_behind
 from ._gel import Gel
 from ._namespace import Array
 from ._shapes import Shapes
 
 REACH_MM = 2.0
 """Bodies farther away from a point than this do not count there, mm."""
+
+
+# The distance of a body that is behind the sensor, mm.
+_FAR_MM = 1000.0
 
 
 class Near(NamedTuple):
@@ -55,6 +59,16 @@ def share_of_bodies(
     thin_mm = xp.min(size_mm, axis=-1)[..., None, None]
     is_open = xp.astype(gel.highest_mm[:, None] - lowest_mm > thin_mm, lowest_mm.dtype)
     found_mm = distance_mm(xp, shapes, point_mm, up, is_open)
+    base_mm = [
+        (axis[0] * away_mm[0] + axis[1] * away_mm[1]) - axis[2] * position_mm[..., 2, None, None]
+        for axis in of_gel
+    ]
+    behind = is_behind(xp, shapes, base_mm, up, is_open)
+    if shapes.is_plane is None:
+        behind = behind & (lowest_mm < 0.0)
+    else:
+        behind = behind & (shapes.is_plane[..., None, None] | (lowest_mm < 0.0))
+    found_mm = xp.where(behind, _FAR_MM, found_mm)
     deepest_mm = xp.maximum(found_mm, -gel.deepest_mm)
     share = xp.clip((REACH_MM - deepest_mm) * (1.0 / REACH_MM), 0.0, None)
     # A body is extended only above its own bounding box. A point whose surface level is not near a

@@ -56,6 +56,42 @@ def distance_mm(
     return found_mm
 
 
+def is_behind(
+    xp: Any, shapes: Shapes, base_mm: list[Array], up: list[Array], is_open: Array
+) -> Array:
+    """Whether bodies are below points of the base of the gel: what is below the base has not come
+    through the gel, it is behind the sensor. `base_mm`, `up` and `is_open` as for `distance_mm`, for
+    bodies that reach below the base.
+    """
+    half_mm = [shapes.half_mm[..., axis, None, None] for axis in range(3)]
+    grown_mm = shapes.grown_mm[..., None, None]
+    own_mm = [base_mm[axis] - shapes.middle_mm[..., axis, None, None] for axis in range(3)]
+    found = sum(map(_product, own_mm, up)) > 0.0
+
+    def put(mask: Array, other: Array) -> Array:
+        return xp.where(mask[..., None, None], other, found)
+
+    sign = [_sign(xp, way) for way in up]
+    if shapes.is_box is not None:
+        height = [xp.abs(way) for way in up]
+        tops = [_top(xp, height[i], 2.0 * (half_mm[i] + grown_mm)) for i in range(3)]
+        main = _lowest(xp, half_mm, tops)
+        over_mm = sum(main[i] * own_mm[i] * sign[i] for i in range(3))
+        found = put(shapes.is_box, over_mm > 0.0)
+    if shapes.is_cylinder is not None:
+        end = _top(xp, xp.abs(up[2]), 2.0 * (half_mm[2] + grown_mm))
+        aside = root(xp, up[0] ** 2 + up[1] ** 2)
+        side = _top(xp, aside, 2.0 * (half_mm[0] + grown_mm))
+        beside = (side > 0.0) & (own_mm[0] * up[0] + own_mm[1] * up[1] > 0.0)
+        found = put(shapes.is_cylinder, xp.where(end > 0.0, own_mm[2] * sign[2] > 0.0, beside))
+    found = found & (is_open > 0.0)
+    if shapes.is_plane is not None:
+        found = put(shapes.is_plane, up[2] + 0.0 * own_mm[2] >= 0.0)
+    if shapes.is_sampled is not None:
+        found = found & ~shapes.is_sampled[..., None, None]
+    return found
+
+
 def _ball_mm(xp: Any, own_mm: list[Array], up: list[Array], is_open: Array) -> Array:
     """The distance to the centre of a ball; for an extended ball, to the vertical axis above its
     centre.

@@ -105,6 +105,22 @@ def colliding(model: mujoco.MjModel) -> _Ints:
     return np.nonzero((model.geom_contype | model.geom_conaffinity) != 0)[0]
 
 
+def filtered(model: mujoco.MjModel, with_gel: _Ints, others: _Ints, by_family: bool) -> npt.NDArray[np.bool_]:
+    """Which pairs of bodies MuJoCo lets pass through each other, `[n_with_gel, n_others]`: bodies of
+    one rigid part, those that the model excludes, and with `by_family` a body and its parent, unless
+    the model disables that filter.
+    """
+    weld: _Ints = np.asarray(model.body_weldid, int)
+    parent: _Ints = weld[model.body_parentid[weld]]
+    a, b = weld[with_gel][:, None], weld[others][None, :]
+    apart = a == b
+    if by_family and not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
+        apart = apart | ((a > 0) & (b > 0) & ((parent[a] == b) | (parent[b] == a)))
+    signature = np.asarray(model.exclude_signature, np.int64)
+    pairs = (with_gel[:, None].astype(np.int64) << 16) + others[None, :], (others[None, :].astype(np.int64) << 16) + with_gel[:, None]
+    return np.asarray(apart | np.isin(pairs[0], signature) | np.isin(pairs[1], signature))
+
+
 def number_of(model: mujoco.MjModel, kind: str, name: str) -> int:
     """The index of a site or geom.
 

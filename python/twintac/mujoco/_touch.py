@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .. import Coupling, FastGel, Imperfection, Sensor, SensorBatch, SensorState, Twin
 from ._clock import Clock
 from ._declared import declared
-from ._geoms import Geoms, number_of
+from ._geoms import Geoms, filtered, number_of
 from ._poses import multiply, turned, turned_back
 from ._push import Push
 from ._shapes import PLANE_STRIDE_MM
@@ -92,8 +92,10 @@ class TouchSensors:
             given.
         friction: Coulomb's coefficient of every body on every gel.
         retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
-        geoms: names of the geoms that can touch; all colliding geoms unless given. Geoms of the
-            sensor's own body never touch it.
+        geoms: names of the geoms that can touch; all colliding geoms unless given, but those of the
+            parent and the children of the sensor's body, which MuJoCo does not collide either.
+            Geoms of the sensor's own body, and of bodies that `<exclude>` names with it, never
+            touch it.
         n_worlds: number of worlds of the model, such as those of a `mujoco.batch.Batch`.
         n_threads: number of threads; as many as there are cores unless given. Results do not depend
             on it.
@@ -157,9 +159,7 @@ class TouchSensors:
         self._radius_mm = 0.5 * float(np.linalg.norm(high_mm - low_mm))
         # The reference point of the wrench.
         self._center_mm = np.array([*self._middle_mm[:2], high_mm[2]])
-        # The parts of one rigid body do not touch each other.
-        weld = model.body_weldid
-        self._can_touch = weld[self._body][:, None] != weld[self._geoms.body][None, :]
+        self._can_touch = ~filtered(model, self._body, self._geoms.body, by_family=geoms is None)
         self._shown = _Shown(*(np.zeros((n_worlds, len(self._site), n), np.float32) for n in (n_taxels, n_taxels, 6, 2, 1)))
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import FastGel, Shape, arrays
 from ..arrays._namespace import Array
-from ..mujoco._geoms import colliding, number_of
+from ..mujoco._geoms import colliding, filtered, number_of
 from ..mujoco._shapes import HFIELD, MESH, contents, surface_of
 from ._scene import Places, Scene, scene
 from ._shapes import primitive
@@ -36,13 +36,15 @@ def scene_of(
     else:
         geom = np.array([number_of(model, "geom", name) for name in geoms], int)
     part_of = np.asarray(model.body_weldid, int)
+    of_sensor, of_geom = model.site_bodyid[site].astype(int), model.geom_bodyid[geom].astype(int)
     places = Places(
         site=site,
         geom=geom,
-        body_of_sensor=model.site_bodyid[site].astype(int),
-        body_of_geom=model.geom_bodyid[geom].astype(int),
+        body_of_sensor=of_sensor,
+        body_of_geom=of_geom,
         moves=part_of > 0,
         part_of=part_of,
+        apart=filtered(model, of_sensor, of_geom, by_family=geoms is None),
     )
     shapes = [_shape(model, int(number)) for number in geom]
     return scene(places, shapes, gel, friction, retardation_s, like)

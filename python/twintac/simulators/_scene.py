@@ -49,6 +49,8 @@ class Places(NamedTuple):
     """For each body, whether it can move."""
     part_of: _Ints
     """For each body, the rigid part to which it belongs: a part does not touch itself."""
+    apart: npt.NDArray[np.bool_] | None = None
+    """Which geoms do not touch which sensors besides, `[n_sensors, n_geoms]`."""
 
 
 def scene(
@@ -73,13 +75,16 @@ def scene(
     body = body[places.moves[body]]
     if not len(body):
         raise ValueError("neither sensors nor shapes that can touch are on a body that moves")
+    can_touch = places.part_of[of_sensor][:, None] != places.part_of[of_geom][None, :]
+    if places.apart is not None:
+        can_touch = can_touch & ~places.apart
     found = Scene(
         gel=arrays.load(source),
         friction=arrays.friction(source, friction, retardation_s=retardation_s),
         shapes=arrays.stack(shapes),
         site=places.site,
         geom=places.geom,
-        can_touch=places.part_of[of_sensor][:, None] != places.part_of[of_geom][None, :],
+        can_touch=can_touch,
         body=body,
         body_of_geom=of_geom,
         body_of_sensor=of_sensor,

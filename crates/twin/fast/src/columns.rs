@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use glam::{Mat3, Vec2, Vec3};
 
+use crate::contact::BASE_MM;
 use crate::distance::{Body, Field, Form, REACH_MM};
 
 /// Extra columns on each side of those that are asked for: the lateral extent of a body follows
@@ -27,6 +28,9 @@ const OF_DISTANCE: [f32; 2] = [0.9, 0.25];
 /// Training shapes are tilted so that their sides lean by up to 20 degrees.
 const RISES: [f32; 2] = [0.35, 0.5];
 
+/// Rate at which the distance grows upward from the base of the gel, from which a body is below it.
+const LEAVES: f32 = 0.1;
+
 /// A grid of vertical columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
@@ -43,8 +47,23 @@ pub(crate) struct Standing<'a> {
     pub(crate) body: &'a Body,
     pub(crate) body_from_gel: Mat3,
     pub(crate) origin: Vec3,
-    /// A height below the body, mm.
-    pub(crate) from_mm: f32,
+    /// The height from which columns are followed, mm: below the body, or at the base of the gel if
+    /// the body reaches below it.
+    from_mm: f32,
+    reaches_base: bool,
+}
+
+impl<'a> Standing<'a> {
+    /// `low_mm`: height of the body's lowest point, mm.
+    pub(crate) fn new(body: &'a Body, body_from_gel: Mat3, origin: Vec3, low_mm: f32) -> Self {
+        Self {
+            body,
+            body_from_gel,
+            origin,
+            from_mm: low_mm.max(BASE_MM),
+            reaches_base: low_mm < BASE_MM,
+        }
+    }
 }
 
 /// Distances to a body at one level of a column, mm.
@@ -60,6 +79,17 @@ struct Level {
     top: f32,
     /// Whether the level is in the body or above it.
     is_inside: bool,
+}
+
+impl Level {
+    /// Where no body is.
+    const FAR: Self = Self {
+        plain_mm: REACH_MM,
+        least_mm: REACH_MM,
+        open_mm: REACH_MM,
+        top: 0.0,
+        is_inside: false,
+    };
 }
 
 thread_local! {
@@ -99,10 +129,16 @@ impl Columns {
         };
         let climbed = all().map(|at| {
             let [x_mm, y_mm] = [0, 1].map(|axis| self.first_mm[axis] + self.spacing_mm * at[axis] as f32);
-            climb(levels_mm(at), standing.from_mm, |height_mm| {
+            let distance_mm = |height_mm: f32| {
                 let point = Vec3::new(x_mm, y_mm, height_mm) - standing.origin;
                 field.distance_mm((standing.body_from_gel * point).into())
-            })
+            };
+            let (levels_mm, from_mm) = (levels_mm(at), standing.from_mm);
+            // What is below the base has not come through the gel: it is behind the sensor.
+            if standing.reaches_base && is_left(from_mm, distance_mm) {
+                return levels_mm.map(|_| Level::FAR);
+            }
+            climb(levels_mm, from_mm, distance_mm)
         });
         KNOWN.with_borrow_mut(|known| {
             known.clear();
@@ -185,6 +221,12 @@ impl Climb {
             slope: self.slope.or_else(|| (plain_mm < 0.0).then(falls)),
         }
     }
+}
+
+/// Whether the way up from a height leaves a body that is below it.
+fn is_left(from_mm: f32, distance_mm: impl Fn(f32) -> f32) -> bool {
+    let [here_mm, above_mm] = [0.0, SMALLEST_MM].map(|up_mm| distance_mm(from_mm + up_mm));
+    here_mm >= 0.0 && above_mm - here_mm > LEAVES * SMALLEST_MM
 }
 
 /// The levels of a column, computed from below.

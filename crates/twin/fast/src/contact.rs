@@ -31,6 +31,9 @@ const SPACING_MM: f32 = 2.0;
 /// of four points of PhysTac's grid has a gap of a fifth of the spacing to them.
 pub(crate) const TOUCHED: [f32; 2] = [0.05, 0.25];
 
+/// Height of the base of the gel, which is bonded to the board, mm.
+pub(crate) const BASE_MM: f32 = 0.0;
+
 /// Number of heights, thus of values at each point.
 pub(crate) const N_CHANNELS: usize = 3;
 
@@ -152,6 +155,7 @@ impl ContactGrid {
             origin,
             columns,
             rows,
+            reaches_base: low.z + REACH_MM < BASE_MM,
         };
         match (&body.form, is_open) {
             (Form::Ball(ball), false) => self.add_placed(&placed, inputs, ball),
@@ -162,12 +166,7 @@ impl ContactGrid {
             (Form::Cylinder(rounded), true) => self.add_placed(&placed, inputs, &rounded.open(upward)),
             (Form::Sampled(samples), false) => self.add_placed(&placed, inputs, samples),
             (Form::Sampled(_), true) => {
-                let standing = Standing {
-                    body,
-                    body_from_gel,
-                    origin,
-                    from_mm: low.z + REACH_MM,
-                };
+                let standing = Standing::new(body, body_from_gel, origin, low.z + REACH_MM);
                 self.add_columns(&placed.columns, &placed.rows, &standing, inputs);
             }
         }
@@ -224,6 +223,10 @@ impl ContactGrid {
             for ((i, height_mm), input) in placed.columns.clone().zip(heights_mm).zip(&mut inputs[points]) {
                 let x_mm = self.first_mm[0] + self.spacing_mm * i as f32 - placed.origin.x;
                 let (plane, z_mm) = (along * x_mm + row, height_mm - placed.origin.z);
+                // What is below the base has not come through the gel: it is behind the sensor.
+                if placed.reaches_base && field.is_below(plane + up * (BASE_MM - placed.origin.z)) {
+                    continue;
+                }
                 for (level, (input, level_mm)) in input.iter_mut().zip(levels_mm).enumerate() {
                     let distance_mm = field.distance_mm(plane + up * (z_mm + level_mm));
                     let share = share(larger(distance_mm, least_mm));
@@ -295,4 +298,6 @@ struct Placed {
     origin: Vec3,
     columns: Range<usize>,
     rows: Range<usize>,
+    /// Whether a part of the body is below the base of the gel.
+    reaches_base: bool,
 }

@@ -416,3 +416,58 @@ fn proximity_rises_from_the_reach_to_the_surface() {
         assert!((found - expected).abs() < 1e-5, "{:?}", reader.proximity());
     }
 }
+
+#[test]
+fn what_is_behind_the_sensor_does_not_press_it() {
+    let (gel, _) = gel(1);
+    let mut reader = gel.reader();
+    let shapes = [
+        Shape::Sphere { radius_mm: 5.0 },
+        Shape::Box {
+            size_mm: [60.0, 60.0, 60.0],
+            edge_radius_mm: 0.0,
+        },
+        Shape::Box {
+            size_mm: [1000.0, 1000.0, 40.0],
+            edge_radius_mm: 0.0,
+        },
+        Shape::Cylinder {
+            radius_mm: 10.0,
+            height_mm: 30.0,
+            edge_radius_mm: 0.5,
+        },
+        Shape::Ring {
+            outer_radius_mm: 6.0,
+            inner_radius_mm: 2.0,
+            height_mm: 8.0,
+            edge_radius_mm: 0.3,
+        },
+    ];
+    let tilts = [0.0, 0.1, 0.26].map(DQuat::from_rotation_y);
+    for shape in &shapes {
+        let body = Body::new(shape, &Surfaces::new()).unwrap();
+        let height_mm = match shape {
+            Shape::Sphere { radius_mm } => 2.0 * radius_mm,
+            Shape::Box { size_mm, .. } => size_mm[2],
+            Shape::Cylinder { height_mm, .. } | Shape::Ring { height_mm, .. } => *height_mm,
+            _ => unreachable!("the shapes above"),
+        };
+        for tilt in tilts {
+            for behind_mm in [2.0, 5.0, 20.0, 100.0, 1e6] {
+                // The middle of its top is below the base.
+                let top = tilt * DVec3::new(0.0, 0.0, height_mm);
+                let pose = Pose {
+                    position_mm: DVec3::new(0.0, 0.0, -behind_mm) - top,
+                    rotation: tilt,
+                };
+                let (mut pressure_kpa, mut wrench) = ([0.0; 8], [0.0; 6]);
+                reader.read(&[(&body, pose)], &mut pressure_kpa, &mut wrench);
+                assert_eq!(
+                    (pressure_kpa, wrench),
+                    ([0.0; 8], [0.0; 6]),
+                    "{shape:?} {behind_mm} mm behind"
+                );
+            }
+        }
+    }
+}

@@ -108,6 +108,11 @@ impl Field for OpenBall<'_> {
         let above = from_middle.dot(self.up).max(0.0);
         (from_middle - above * self.up).length() - self.ball.radius_mm
     }
+
+    #[inline(always)]
+    fn is_below(&self, point: Vec3A) -> bool {
+        (point - Vec3A::new(0.0, 0.0, self.ball.radius_mm)).dot(self.up) > 0.0
+    }
 }
 
 impl Field for OpenBox<'_> {
@@ -124,6 +129,11 @@ impl Field for OpenBox<'_> {
         let beside = (from_middle * self.down - half_mm) * cosine + over_top * sine;
         self.solid.over_sides_mm(beyond.max(beside))
     }
+
+    #[inline(always)]
+    fn is_below(&self, point: Vec3A) -> bool {
+        (point - self.solid.middle_mm).dot(self.out) > 0.0
+    }
 }
 
 impl Field for OpenCylinder<'_> {
@@ -137,6 +147,14 @@ impl Field for OpenCylinder<'_> {
         let over_top = (from_middle * self.out - self.solid.half_height_mm).max(0.0);
         let aside = beside.length().max((beside - self.lean * over_top).length());
         self.solid.over_sides_mm(aside - self.solid.radius_mm, above)
+    }
+
+    #[inline(always)]
+    fn is_below(&self, point: Vec3A) -> bool {
+        if self.end == 0.0 {
+            return self.side * Vec2::new(point.x, point.y).dot(self.up) > 0.0;
+        }
+        (point.z - self.solid.middle_mm) * self.out > 0.0
     }
 }
 

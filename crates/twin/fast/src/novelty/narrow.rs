@@ -58,12 +58,8 @@ pub(crate) fn narrowness(grid: &SurfaceGrid, body: &Body, gel_from_body: &Pose) 
         columns: range(0),
         rows: range(1),
     };
-    let standing = Standing {
-        body,
-        body_from_gel: Mat3::from_quat(rotation.inverse()),
-        origin,
-        from_mm: low.z + REACH_MM,
-    };
+    let body_from_gel = Mat3::from_quat(rotation.inverse());
+    let standing = Standing::new(body, body_from_gel, origin, low.z + REACH_MM);
     let levels_mm = |[i, j]: [i32; 2]| {
         let at = [(0, i), (1, j)].map(|(axis, n)| f64::from(first_mm[axis] + step_mm * n as f32));
         let top_mm = grid.height_mm_at(at.into()) as f32;
