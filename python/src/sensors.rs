@@ -450,10 +450,10 @@ impl SensorBatch {
         rows(py, readings_kpa, [self.n_sensors, self.n_taxels])
     }
 
-    /// How near the bodies were to each sensor in the last step, `[n_sensors]`: 1 where one touches,
-    /// falling linearly to 0 where the nearest is 2 mm away or farther. Distances are those of
-    /// points of the gel's surface, which are 2 mm apart on PhysTac. No readings depend on it: it is
-    /// for rewards, and for sensors that measure proximity besides.
+    /// How near the bodies were to each sensor in the last step, `[n_sensors]`: 1 where one
+    /// touches, falling linearly to 0 where the nearest is 2 mm away or farther. Distances are
+    /// those of points of the gel's surface, which are 2 mm apart on PhysTac. No readings depend on
+    /// it: it is for rewards, and for sensors that measure proximity besides.
     fn proximity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let proximity: Vec<f32> = self.batch.look(py, |batch| match batch {
             Batch::Free(batch) => batch.proximity().collect(),

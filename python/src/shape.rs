@@ -196,8 +196,9 @@ impl Shape {
     /// - `triangles`: indices of the three vertices of each triangle, counter-clockwise seen from
     ///   outside; `[n_triangles, 3]`.
     ///
-    /// Raises `Error` for arrays of another shape, for an index without a vertex, for a surface that
-    /// is not closed, and for one of less than 0.1 mm along an axis, as lengths in metres make it.
+    /// Raises `Error` for arrays of another shape, for an index without a vertex, for a surface
+    /// that is not closed, and for one of less than 0.1 mm along an axis, as lengths in metres make
+    /// it.
     #[staticmethod]
     fn surface(py: Python<'_>, vertices_mm: Given<'_>, triangles: Given<'_>) -> PyResult<Self> {
         let vertices_mm: Array<2> = vertices_mm.numbers("vertices_mm", "[n_vertices, 3], mm")?;

@@ -1156,8 +1156,9 @@ class Shape:
         - `triangles`: indices of the three vertices of each triangle, counter-clockwise seen from
           outside; `[n_triangles, 3]`.
 
-        Raises `Error` for arrays of another shape, for an index without a vertex, for a surface that
-        is not closed, and for one of less than 0.1 mm along an axis, as lengths in metres make it.
+        Raises `Error` for arrays of another shape, for an index without a vertex, for a surface
+        that is not closed, and for one of less than 0.1 mm along an axis, as lengths in metres make
+        it.
         """
     @staticmethod
     def union(parts: Sequence[tuple[Shape, Pose]]) -> Shape:
@@ -1465,10 +1466,10 @@ class SensorBatch:
     def read_ground_truth(self) -> _Single:
         """The readings of the last step without sensor variation, kPa, `[n_sensors, n_taxels]`."""
     def proximity(self) -> _Single:
-        """How near the bodies were to each sensor in the last step, `[n_sensors]`: 1 where one touches,
-        falling linearly to 0 where the nearest is 2 mm away or farther. Distances are those of
-        points of the gel's surface, which are 2 mm apart on PhysTac. No readings depend on it: it is
-        for rewards, and for sensors that measure proximity besides.
+        """How near the bodies were to each sensor in the last step, `[n_sensors]`: 1 where one
+        touches, falling linearly to 0 where the nearest is 2 mm away or farther. Distances are
+        those of points of the gel's surface, which are 2 mm apart on PhysTac. No readings depend on
+        it: it is for rewards, and for sensors that measure proximity besides.
         """
     def wrench_of_touches(self) -> _Single:
         """Wrench of each touch by itself in the last step, in the order of the touches,

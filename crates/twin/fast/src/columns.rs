@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use glam::{Mat3, Vec2, Vec3};
 
-use crate::contact::BASE_MM;
 use crate::distance::{Body, Field, Form, REACH_MM};
+use crate::surface::BASE_MM;
 
 /// Extra columns on each side of those that are asked for: the lateral extent of a body follows
 /// from its neighbouring columns.

@@ -13,7 +13,7 @@ use twintac_shape::Pose;
 use crate::columns::{AROUND, Columns, Standing};
 use crate::distance::{Body, Field, Form, REACH_MM, Upward};
 use crate::simd::dispatch;
-use crate::surface::SurfaceGrid;
+use crate::surface::{BASE_MM, SurfaceGrid};
 
 /// Heights relative to the undeformed surface at which distances are evaluated, mm. The deeper ones
 /// show how deep a narrow body presses. They scale with the spacing of the points where it is
@@ -30,9 +30,6 @@ const SPACING_MM: f32 = 2.0;
 /// points, beyond the second it does not. An end with a radius of 2.5 mm that touches in the middle
 /// of four points of PhysTac's grid has a gap of a fifth of the spacing to them.
 pub(crate) const TOUCHED: [f32; 2] = [0.05, 0.25];
-
-/// Height of the base of the gel, which is bonded to the board, mm.
-pub(crate) const BASE_MM: f32 = 0.0;
 
 /// Number of heights, thus of values at each point.
 pub(crate) const N_CHANNELS: usize = 3;

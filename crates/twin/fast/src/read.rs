@@ -155,9 +155,9 @@ impl FastReader {
         self.read_from(bodies, touches, 0, ends, pressure_kpa, wrench);
     }
 
-    /// How near the bodies were to each sensor of the last [`Self::read_many`]: 1 where one touches,
-    /// falling linearly to 0 where the nearest is 2 mm away or farther. Distances are those of
-    /// points of the gel's surface, which are 2 mm apart on PhysTac. `[n_sensors]`
+    /// How near the bodies were to each sensor of the last [`Self::read_many`]: 1 where one
+    /// touches, falling linearly to 0 where the nearest is 2 mm away or farther. Distances are
+    /// those of points of the gel's surface, which are 2 mm apart on PhysTac. `[n_sensors]`
     #[must_use]
     pub fn proximity(&self) -> &[f32] {
         &self.proximity

@@ -4,6 +4,9 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use twintac_sensor::Sensor;
 
+/// Height of the base of the gel, which is bonded to the board, mm.
+pub(crate) const BASE_MM: f32 = 0.0;
+
 /// Spacing of the grid's points along x and along y, mm. It is larger over a gel higher than ten of
 /// these: the base of such a gel does not respond to such small details.
 const SPACING_MM: f64 = 2.0;
