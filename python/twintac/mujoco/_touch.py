@@ -71,7 +71,7 @@ class TouchSensors:
     more stay at rest on the gel.
 
     `update` writes the forces of the gels into `qfrc_applied` in each step, and changes no other
-    field: you, a viewer or a reset may use `xfrc_applied`. With `pushing` you may use
+    field but the `sensordata` of declared sensors: you, a viewer or a reset may use `xfrc_applied`. With `pushing` you may use
     `qfrc_applied` as well, and MuJoCo's own force sensors measure the gels.
 
     A gel keeps the state of friction and damping for each pair of geom and sensor in each world. If

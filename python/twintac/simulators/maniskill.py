@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import torch
 from mani_skill.utils.structs import Actor, Link
-from sapien import physx
+from sapien import Pose, physx
 
 from .. import FastGel, Shape, arrays
 from ._gels import Gels, local_pose, placed, rotation_of
@@ -31,7 +31,7 @@ __all__ = ["Memory", "Sensors", "Touch"]
 
 # PhysX has the axis of cylinders and capsules, and the normal of planes, along x: this rotation
 # turns z to x.
-_Z_TO_X = (0.0, 0.5**0.5, 0.0, 0.5**0.5)
+_Z_TO_X = Pose(q=(0.5**0.5, 0.0, 0.5**0.5, 0.0))
 
 
 class Sensors(Gels):
@@ -186,8 +186,8 @@ def _numbers(shape: Any) -> list[Any]:
 
 def _placed(body: Actor | Link, shape: Any) -> _Placed:
     kind = type(shape).__name__.removeprefix("PhysxCollisionShape")
-    w, x, y, z = (float(part) for part in shape.local_pose.q)
-    position_mm, quaternion = 1e3 * shape.local_pose.p, (x, y, z, w)
+    pose = shape.local_pose * _Z_TO_X if kind in ("Cylinder", "Capsule", "Plane") else shape.local_pose
+    position_mm, quaternion = 1e3 * pose.p, pose.q[[1, 2, 3, 0]]
     if isinstance(shape, physx.PhysxCollisionShapeConvexMesh | physx.PhysxCollisionShapeTriangleMesh):
         corners_mm = 1e3 * shape.vertices * shape.scale
         triangles = np.asarray(shape.triangles, np.int64).reshape(-1, 3)
@@ -196,15 +196,4 @@ def _placed(body: Actor | Link, shape: Any) -> _Placed:
     found = primitive(kind, getattr(shape, "half_size", half_m))
     if found is None:
         raise ValueError(f"a shape of `{body.name}` is a {kind}, which sensors do not feel")
-    if kind in ("Cylinder", "Capsule", "Plane"):
-        quaternion = _product(quaternion, _Z_TO_X)
     return found, position_mm, quaternion
-
-
-def _product(
-    first: tuple[float, float, float, float], second: tuple[float, float, float, float]
-) -> tuple[float, float, float, float]:
-    """The rotation `second` and then `first`, `(x, y, z, w)`."""
-    a, b = np.array(first[:3]), np.array(second[:3])
-    x, y, z = (first[3] * b + second[3] * a + np.cross(a, b)).tolist()
-    return x, y, z, float(first[3] * second[3] - a @ b)

@@ -1,7 +1,6 @@
 //! Errors of contact estimation.
 
 use twintac_config::Problem;
-use twintac_fast::PortElsewhere;
 use twintac_shape::ShapeError;
 
 /// Why an [`Inverse`](crate::Inverse) cannot be made, or a frame cannot be used.
@@ -29,9 +28,6 @@ pub enum InverseError {
         "there is no map of the base of this gel: boxes are cast into it, so its surrogate was trained at the taxels alone"
     )]
     NoFloor,
-    /// A port where the surrogate was not trained.
-    #[error(transparent)]
-    Port(#[from] PortElsewhere),
     /// There is no known shape.
     #[error("there is no known shape: at least one is needed")]
     NoShape,
