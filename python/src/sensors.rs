@@ -213,6 +213,8 @@ pub(crate) struct SensorBatch {
     bodies: Shared<Arc<[twintac::Body]>>,
     n_sensors: usize,
     n_taxels: usize,
+    /// Name of the sensor whose gel this is.
+    of: String,
     has_twin: bool,
     is_coupled: bool,
     n_threads: usize,
@@ -230,6 +232,8 @@ enum Batch {
 #[derive(Clone)]
 pub(crate) struct SensorState {
     state: Arc<twintac::SensorState>,
+    /// Name of the sensor whose gel it is of.
+    of: String,
 }
 
 #[pymethods]
@@ -314,6 +318,7 @@ impl SensorBatch {
             bodies: Shared::new(bodies.into()),
             n_sensors,
             n_taxels,
+            of: gel.gel.sensor().to_owned(),
             has_twin,
             is_coupled,
             n_threads,
@@ -473,6 +478,7 @@ impl SensorBatch {
         })?;
         Ok(SensorState {
             state: Arc::new(state),
+            of: self.of.clone(),
         })
     }
 
@@ -481,23 +487,23 @@ impl SensorBatch {
     /// - `sensor`: index of the sensor, from 0.
     /// - `state`: the state.
     ///
-    /// Raises `Error` for the state of a sensor with another number of taxels, and for one with a
-    /// twin if these sensors have none, or the reverse.
+    /// Raises `Error` for the state of another kind of sensor or with another number of taxels, and
+    /// for one with a twin if these sensors have none, or the reverse.
     #[allow(clippy::needless_pass_by_value)] // as Python gives it
     fn set_state(&self, py: Python<'_>, sensor: Given<'_>, state: SensorState) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
         let (own, given) = (
-            (self.n_taxels, self.has_twin),
-            (state.state.n_taxels(), state.state.has_twin()),
+            (self.n_taxels, self.has_twin, self.of.as_str()),
+            (state.state.n_taxels(), state.state.has_twin(), state.of.as_str()),
         );
         if own != given {
-            let text = |(n_taxels, has_twin): (usize, bool)| {
+            let text = |(n_taxels, has_twin, of): (usize, bool, &str)| {
                 format!(
-                    "{n_taxels} taxels {} a twin",
+                    "`{of}`, {n_taxels} taxels {} a twin",
                     if has_twin { "with" } else { "without" }
                 )
             };
-            let problem = format!("is of a sensor of {}, expected {}", text(given), text(own));
+            let problem = format!("is of {}, expected {}", text(given), text(own));
             return Err(unusable(py, "state", &problem));
         }
         self.batch.look(py, |batch| match batch {

@@ -186,8 +186,11 @@ def test_things_that_a_gel_holds_are_told_apart(ball: Body) -> None:
         SensorBatch(gel, [ball], 1, coupling=Coupling(Sensor.phystac_tip(), friction=0.8))
     with pytest.raises(Error, match="gel_from_body|position_mm"):
         sensors.step(0.01, places * np.nan, [0, 0], [2], touch_id=[1, 2])
-    with pytest.raises(Error, match="8 taxels without a twin, expected 1 taxels"):
+    with pytest.raises(Error, match="8 taxels without a twin, expected `phystac`, 1 taxels"):
         SensorBatch(gel.with_ports([[0.0, 0.0]]), [ball], 1).set_state(0, sensors.state(0))
+    of_tip = SensorBatch(FastGel.phystac_tip(), [ball], 1).state(0)
+    with pytest.raises(Error, match="is `phystac-tip`, 8 taxels without a twin, expected `phystac`"):
+        SensorBatch(gel, [ball], 1).set_state(0, of_tip)
 
 
 def test_an_indenter_that_the_sensor_does_not_have_is_named() -> None:

@@ -55,6 +55,23 @@ GEOMS = {
 
 
 @pytest.mark.parametrize("kind", GEOMS)
+@pytest.mark.parametrize(
+    ("place", "match"),
+    [
+        ({"position_mm": (0.0, 0.0, float("nan"))}, "`position_mm`"),
+        ({"position_mm": (0.0, 0.0)}, "three finite lengths"),
+        ({"quaternion": (0.0, 0.0, 0.0, 0.0)}, "of length 0.000"),
+        ({"quaternion": (0.0, 0.0, 1.0, 1.0)}, "of length 1.414"),
+    ],
+)
+def test_a_sensor_is_not_added_at_a_place_that_is_none(place: dict[str, tuple[float, ...]], match: str) -> None:
+    spec = mujoco.MjSpec()
+    spec.worldbody.add_body(name="board")
+    with pytest.raises(ValueError, match=match):
+        add_sensor(spec, Sensor.phystac(), body="board", name="touch", **place)
+    assert not spec.sites
+
+
 def test_a_geom_is_felt_as_its_shape(kind: str) -> None:
     geom, below_m, shape = GEOMS[kind]
     found = model(f'<body name="thing"><freejoint/><geom {geom} mass="1"/></body>')

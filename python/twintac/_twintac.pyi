@@ -1487,8 +1487,8 @@ class SensorBatch:
         - `sensor`: index of the sensor, from 0.
         - `state`: the state.
 
-        Raises `Error` for the state of a sensor with another number of taxels, and for one with a
-        twin if these sensors have none, or the reverse.
+        Raises `Error` for the state of another kind of sensor or with another number of taxels, and
+        for one with a twin if these sensors have none, or the reverse.
         """
     def rest(self, sensor: _Count) -> None:
         """Resets one sensor to rest until its next step. Its deviations stay.

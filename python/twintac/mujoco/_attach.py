@@ -31,8 +31,14 @@ def add_sensor(
         quaternion: orientation of the gel's frame in the body's frame, `(x, y, z, w)`.
 
     Raises:
-        ValueError: for a body that the model does not have.
+        ValueError: for a body that the model does not have, a position that is not finite, and a
+            quaternion of another length than 1.
     """
+    length = float(np.linalg.norm(quaternion))
+    if np.shape(position_mm) != (3,) or not np.isfinite(position_mm).all():
+        raise ValueError(f"`position_mm` is {position_mm}, expected three finite lengths in mm")
+    if np.shape(quaternion) != (4,) or not abs(length - 1.0) < 1e-3:
+        raise ValueError(f"`quaternion` is {quaternion}, of length {length:.3f}, expected (x, y, z, w) of length 1")
     parent = spec.body(body)
     if parent is None:
         known = ", ".join(other.name for other in spec.bodies)

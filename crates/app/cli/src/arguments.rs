@@ -191,7 +191,7 @@ pub(crate) struct Mesh {
     #[arg(long, value_name = "FILE")]
     pub(crate) check: Option<PathBuf>,
     /// Unit of length in that file: mm, cm, m or inch.
-    #[arg(long, value_name = "UNIT", default_value = "mm", requires = "check")]
+    #[arg(long, value_name = "UNIT", default_value = "mm", conflicts_with = "sensor")]
     pub(crate) unit: LengthUnit,
     /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
     #[arg(long, value_name = "DIR", conflicts_with = "check")]
@@ -330,7 +330,7 @@ pub(crate) struct Record {
     #[arg(long)]
     pub(crate) dry_run: bool,
     /// Faults of the emulated bench (TOML), in tables [[faults]].
-    #[arg(long, value_name = "FILE", requires = "lab", conflicts_with_all = ["scale", "altitude_m"])]
+    #[arg(long, value_name = "FILE", requires = "lab", conflicts_with_all = ["scale", "altitude_m", "dry_run"])]
     pub(crate) faults: Option<PathBuf>,
     /// Compute what the emulated bench would record, without devices and without waiting.
     #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json", "scale", "altitude_m"])]

@@ -102,6 +102,20 @@ pub enum SolveError {
         /// Longest edge of the body's surface there, mm.
         edge_mm: f64,
     },
+    /// The surface of the body would slip around the indenter, to its far side, where contact pulls
+    /// instead of pressing.
+    #[error(
+        "the surface slips around the indenter at {at_mm:.3} mm, beyond {:.1} % of the step: the edges of the mesh, {edge_mm:.2} mm long there, are too long for this depth. Take \
+         shorter edges, or press less deep", fraction * 100.0
+    )]
+    Pulled {
+        /// Fraction of the step that was done before.
+        fraction: f64,
+        /// A point of the surface, mm.
+        at_mm: glam::DVec3,
+        /// Longest edge of the body's surface there, mm.
+        edge_mm: f64,
+    },
     /// The indenter would enter something rigid.
     #[error("blocked: the indenter would be at least {depth_mm:.3} mm deep in {by} at {at_mm:.3} mm")]
     Blocked {
@@ -144,7 +158,8 @@ impl SolveError {
             Self::NotConverged { fraction, .. }
             | Self::Inverted { fraction }
             | Self::Singular { fraction }
-            | Self::PassedThrough { fraction, .. } => *fraction,
+            | Self::PassedThrough { fraction, .. }
+            | Self::Pulled { fraction, .. } => *fraction,
             _ => 0.0,
         }
     }

@@ -106,3 +106,32 @@ fn a_blade_between_nodes_is_said() {
     }
     println!("{last_n} N");
 }
+
+#[test]
+fn a_surface_that_slips_around_a_ball_is_refused() {
+    let mesh = block(&even(-12.0, 12.0, 9), &even(-10.0, 10.0, 8), &even(0.0, 8.0, 3));
+    let settings = SolverSettings {
+        min_substep: 1.0,
+        ..SolverSettings::default()
+    };
+    let gel = SoftBody::new(&mesh, Material::neo_hookean(15.2, 0.495), settings).unwrap();
+    let ball = Shape::Sphere { radius_mm: 5.0 };
+    let ball = ball.signed_distance_field(&Surfaces::default()).unwrap();
+    let mut state = gel.rest();
+    for step in 1..=20 {
+        let depth_mm = 0.38 * f64::from(step);
+        let pressed = press(&gel, &mut state, ball.as_ref(), 8.0, depth_mm);
+        match pressed {
+            Ok(frame) => {
+                let force_n = -frame.indenter_force_n.z;
+                assert!(force_n > 0.0, "{force_n} N at {depth_mm} mm");
+            }
+            Err(error) => {
+                assert!(matches!(error, SolveError::Pulled { .. }), "{error}");
+                assert!(depth_mm > 5.0, "{error}");
+                return;
+            }
+        }
+    }
+    panic!("the ball is 7.6 mm deep in a gel of 8 mm, with edges of 2.7 mm");
+}

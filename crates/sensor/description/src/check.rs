@@ -7,10 +7,14 @@ use twintac_config::{ConfigError, Document};
 use twintac_shape::{ExtentError, SignedDistance, Solid, Surfaces};
 
 use crate::file::SensorToml;
-use crate::{Indenter, Sensor};
+use crate::{Indenter, Sensor, Taxel};
 
 /// Lengths that differ by less count as equal, mm.
 const TOLERANCE_MM: f64 = 1e-6;
+/// Gel above a port that is less high than this is none, mm.
+const COVER_MM: f64 = 1e-3;
+/// Absolute pressure of the air at sea level (ISO 2533), kPa.
+const AIR_KPA: f64 = 101.325;
 /// A surface from a file counts as standing on the board if the height of its lowest point is at
 /// most this, mm.
 const ON_BOARD_MM: f64 = 1e-3;
@@ -227,11 +231,54 @@ impl Checker<'_> {
                 return Err(self.error(&field("position_mm"), problem, "put the taxel onto its face"));
             }
             self.above_zero(&field("port_radius_mm"), taxel.port_radius_mm, most::LENGTH_MM)?;
+            self.port(index)?;
         }
         match self.sensor.miswired() {
             Some(wrong) => Err(self.error(&wrong.field, wrong.problem, &wrong.remedy)),
             None => Ok(()),
         }
+    }
+
+    /// Checks that gel presses on a port, and on no other port at the same point.
+    fn port(&self, index: usize) -> Checked {
+        let taxel = &self.sensor.taxels[index];
+        let (at, radius_mm) = (taxel.position_mm, taxel.port_radius_mm);
+        let field = |name: &str| format!("taxels[{index}].{name}");
+        if !self.sensor.is_within_gel(at + DVec3::Z * COVER_MM) {
+            let problem = format!("is {at}, on the free surface of the gel, where nothing is above the port");
+            return Err(self.error(
+                &field("position_mm"),
+                problem,
+                "put the port under the gel: on the board at z = 0, or on an inclusion",
+            ));
+        }
+        if taxel.rim_mm().all(|at| !self.sensor.is_within_gel(at)) {
+            let problem = format!("is {radius_mm}: the whole rim of the port is outside the gel");
+            return Err(self.error(
+                &field("port_radius_mm"),
+                problem,
+                "give the radius of the hole that the gel presses on, mm",
+            ));
+        }
+        let mut before = self.sensor.taxels[..index].iter().enumerate();
+        let is_on = |other: &Taxel| {
+            let between = other.position_mm - at;
+            let is_level = between.z.abs() <= TOLERANCE_MM;
+            is_level && between.length() < radius_mm + other.port_radius_mm - TOLERANCE_MM
+        };
+        let Some((other, taxel)) = before.find(|(_, other)| is_on(other)) else {
+            return Ok(());
+        };
+        let apart_mm = taxel.position_mm.distance(at);
+        let problem = format!(
+            "is {at}, {apart_mm:.2} mm from that of taxels[{other}]: ports with radii of {radius_mm} and {} mm overlap",
+            taxel.port_radius_mm
+        );
+        Err(self.error(
+            &field("position_mm"),
+            problem,
+            "give each port a place of its own",
+        ))
     }
 
     fn readout(&self) -> Checked {
@@ -241,6 +288,20 @@ impl Checker<'_> {
         if readout.min_kpa >= readout.max_kpa {
             let problem = format!("is {}, not above min_kpa {}", readout.max_kpa, readout.min_kpa);
             return Err(self.error("readout.max_kpa", problem, "give the larger pressure here"));
+        }
+        let (low, high) = (readout.min_kpa, readout.max_kpa);
+        if !(low..=high).contains(&AIR_KPA) {
+            let (field, value) = if low > AIR_KPA {
+                ("min_kpa", low)
+            } else {
+                ("max_kpa", high)
+            };
+            let problem = format!("is {value}, and the pressure of the air is {AIR_KPA} kPa");
+            return Err(self.error(
+                &format!("readout.{field}"),
+                problem,
+                "give absolute pressures in kPa, with that of the air between them",
+            ));
         }
         self.above_zero(
             "readout.resolution_kpa",
@@ -289,7 +350,18 @@ impl Checker<'_> {
             return Ok(());
         };
         self.above_zero("limits.force_n", limits.force_n, most::FORCE_N)?;
-        self.above_zero("limits.depth_mm", limits.depth_mm, most::LENGTH_MM)
+        self.above_zero("limits.depth_mm", limits.depth_mm, most::LENGTH_MM)?;
+        let (low, high) = self.sensor.gel.solid.bounds_mm(&self.sensor.surfaces);
+        let height_mm = high.z - low.z;
+        if limits.depth_mm < height_mm {
+            return Ok(());
+        }
+        let problem = format!("is {}, but the gel is {height_mm} mm high", limits.depth_mm);
+        Err(self.error(
+            "limits.depth_mm",
+            problem,
+            "give a depth that leaves gel under the indenter",
+        ))
     }
 
     fn indenters(&self) -> Checked {

@@ -63,14 +63,8 @@ impl Sensor {
     /// Whether a port extends over the gel's side. Such a port reads only the gel within it.
     #[must_use]
     pub fn has_port_at_side(&self) -> bool {
-        self.taxels.iter().any(|taxel| {
-            let rim = (0..RIM_POINTS).map(|point| TAU * f64::from(point) / f64::from(RIM_POINTS));
-            let mut rim = rim.map(|angle| taxel.port_radius_mm * DVec2::from_angle(angle));
-            rim.any(|aside_mm| {
-                let at = taxel.position_mm + aside_mm.extend(0.0);
-                !self.gel.solid.contains(at, 1e-6, &self.surfaces)
-            })
-        })
+        let is_beside = |at: DVec3| !self.gel.solid.contains(at, 1e-6, &self.surfaces);
+        self.taxels.iter().any(|taxel| taxel.rim_mm().any(is_beside))
     }
 }
 
@@ -157,6 +151,17 @@ pub struct Taxel {
     /// figures and reported beside them.
     #[serde(default)]
     pub doubtful: Option<String>,
+}
+
+impl Taxel {
+    /// Points on the rim of the port, mm.
+    pub(crate) fn rim_mm(&self) -> impl Iterator<Item = DVec3> + use<> {
+        let (center_mm, radius_mm) = (self.position_mm, self.port_radius_mm);
+        (0..RIM_POINTS).map(move |point| {
+            let angle = TAU * f64::from(point) / f64::from(RIM_POINTS);
+            center_mm + (radius_mm * DVec2::from_angle(angle)).extend(0.0)
+        })
+    }
 }
 
 /// Read-out of the sensor.

@@ -120,6 +120,80 @@ fn taxels() {
 }
 
 #[test]
+fn a_port_has_gel_above_it_and_a_place_of_its_own() {
+    let [a, b] = ["position_mm = [0.0, 0.0, 1.0]", "position_mm = [8.0, 0.0, 0.0]"];
+    for (old, new, field, says) in [
+        (
+            b,
+            "position_mm = [8.0, 0.0, 6.0]",
+            "taxels[1].position_mm",
+            "free surface",
+        ),
+        (
+            b,
+            "position_mm = [0.0, 0.0, 1.0]",
+            "taxels[1].position_mm",
+            "0.00 mm from that of taxels[0]",
+        ),
+        (
+            b,
+            "position_mm = [0.7, 0.7, 1.0]",
+            "taxels[1].position_mm",
+            "overlap",
+        ),
+        (
+            a,
+            "position_mm = [7.1, 0.0, 0.0]",
+            "taxels[1].position_mm",
+            "overlap",
+        ),
+    ] {
+        let place = if old == a { b } else { new };
+        let text = GOOD.replace(old, new);
+        let lines = text.lines().enumerate();
+        let line = lines.filter(|(_, line)| *line == place).last().unwrap().0 + 1;
+        let found = error(&text);
+        assert_eq!((found.line, found.field.as_str()), (line, field), "{found}");
+        assert!(found.to_string().contains(says), "{found}");
+    }
+    expect_at(
+        "port_radius_mm = 0.5\nchannel = 1",
+        "port_radius_mm = 30.0\nchannel = 1",
+        "_mm = 30.0",
+        "taxels[1].port_radius_mm",
+        "whole rim",
+    );
+    for apart in ["[1.0, 0.0, 1.0]", "[0.0, 2.5, 0.0]"] {
+        let beside = GOOD.replace("[8.0, 0.0, 0.0]", apart);
+        Sensor::parse("small.toml", &beside, &no_files).unwrap();
+    }
+}
+
+#[test]
+fn a_readout_has_the_air_in_its_range_and_limits_leave_gel() {
+    expect(
+        "min_kpa = 50.0",
+        "min_kpa = 110.0",
+        "readout.min_kpa",
+        "pressure of the air",
+    );
+    expect(
+        "max_kpa = 150.0",
+        "max_kpa = 100.0",
+        "readout.max_kpa",
+        "pressure of the air",
+    );
+    let with_limits = |depth: &str| {
+        let limits = format!("[limits]\nforce_n = 20.0\ndepth_mm = {depth}\n\n[[inclusions]]");
+        GOOD.replace("[[inclusions]]", &limits)
+    };
+    Sensor::parse("small.toml", &with_limits("5.0"), &no_files).unwrap();
+    let found = error(&with_limits("6.0"));
+    assert_eq!(found.field, "limits.depth_mm");
+    assert!(found.to_string().contains("6 mm high"), "{found}");
+}
+
+#[test]
 fn a_port_may_reach_over_the_gels_side() {
     let wide = GOOD.replace(
         "port_radius_mm = 0.5\nchannel = 1",

@@ -200,6 +200,14 @@ impl PressPath {
                 let hint = format!("give a rate above zero that makes at most {MOST_FRAMES} frames");
                 return Err(PathError::new("rate_hz", &format!("is {rate_hz} Hz"), &hint));
             }
+            if self.poses.len() > 1 && n_frames < 1.0 - 1e-9 {
+                let problem = format!("is {rate_hz} Hz: the path ends before its second frame");
+                return Err(PathError::new(
+                    "rate_hz",
+                    &problem,
+                    "give a higher rate, or leave it out: then each pose is a frame",
+                ));
+            }
         }
         for (index, force_n) in self.poses.iter().map(|pose| pose.force_n).enumerate() {
             if let Some(force_n) = force_n.filter(|force_n| !(*force_n > 0.0 && force_n.is_finite())) {

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::{Recording, RecordingError};
+use crate::{Press, Recording, RecordingError};
+
+/// Two presses with fewer frames can have the same numbers by chance.
+const FEWEST_FRAMES: usize = 10;
 
 impl Recording {
     /// Appends the presses of another recording. A press whose name exists gets a number, as in
@@ -10,7 +13,9 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// [`RecordingError::Mixed`]: sensor, taxels or provenance differ. Nothing is appended then.
+    /// [`RecordingError::Mixed`]: sensor, taxels or provenance differ.
+    /// [`RecordingError::Repeated`]: a press is a copy of one that is there. Nothing is appended
+    /// then.
     pub fn append(&mut self, next: Self) -> Result<(), RecordingError> {
         self.expect_alike(&next)?;
         let names = self.presses.iter().map(|press| press.name.clone());
@@ -28,7 +33,8 @@ impl Recording {
         Ok(())
     }
 
-    /// Checks that presses of both can be in one recording.
+    /// Checks that presses of both can be in one recording: they are of the same sensor, and none
+    /// of `next` is a copy, which would be learnt from and judged with at once.
     pub(crate) fn expect_alike(&self, next: &Self) -> Result<(), RecordingError> {
         let facts = |recording: &Self| {
             [
@@ -46,7 +52,31 @@ impl Recording {
                 });
             }
         }
+        for press in &next.presses {
+            if let Some(same) = self.presses.iter().find(|other| press.is_copy_of(other)) {
+                return Err(RecordingError::Repeated {
+                    press: press.name.clone(),
+                    of: same.name.clone(),
+                });
+            }
+        }
         Ok(())
+    }
+}
+
+impl Press {
+    /// Whether both have the same times, poses and readings, to the last bit.
+    fn is_copy_of(&self, other: &Self) -> bool {
+        let bits = |rows: &[Vec<f64>]| {
+            rows.iter()
+                .flatten()
+                .map(|reading| reading.to_bits())
+                .collect::<Vec<_>>()
+        };
+        self.time_s.len() >= FEWEST_FRAMES
+            && self.time_s == other.time_s
+            && self.gel_from_indenter == other.gel_from_indenter
+            && bits(&self.taxels_raw) == bits(&other.taxels_raw)
     }
 }
 
@@ -84,6 +114,29 @@ mod tests {
         all.append(recording(&["p#1"])).unwrap();
         let names: Vec<&str> = all.presses.iter().map(|press| press.name.as_str()).collect();
         assert_eq!(names, ["p#1", "p#2", "p#1 (2)", "q#1", "p#1 (3)"]);
+    }
+
+    #[test]
+    fn a_copy_of_a_press_is_refused_under_any_name() {
+        let with_frames = |name: &str, n_frames: usize| {
+            let mut recording = recording(&[name]);
+            let press = &mut recording.presses[0];
+            press.time_s = (0..n_frames).map(|frame| frame as f64).collect();
+            press.taxels_raw = vec![vec![f64::NAN, 0.5]; n_frames];
+            recording
+        };
+        let mut all = with_frames("p", 20);
+        let error = all.append(with_frames("q", 20)).unwrap_err().to_string();
+        assert!(
+            error.starts_with("press `q` has the same times, poses and readings as `p`"),
+            "{error}"
+        );
+        let mut other = with_frames("q", 20);
+        other.presses[0].taxels_raw[7][1] = 0.51;
+        all.append(other).unwrap();
+        all.append(with_frames("r", 1)).unwrap();
+        all.append(with_frames("s", 1)).unwrap();
+        assert_eq!(all.presses.len(), 4);
     }
 
     #[test]

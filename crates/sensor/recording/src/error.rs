@@ -79,6 +79,16 @@ pub enum RecordingError {
         /// What is wrong, and what to do.
         problem: String,
     },
+    /// A press is there twice.
+    #[error(
+        "press `{press}` has the same times, poses and readings as `{of}`, to the last digit: the same recording was given twice; leave one of them out"
+    )]
+    Repeated {
+        /// The press that was to be added.
+        press: String,
+        /// The press that it is a copy of.
+        of: String,
+    },
     /// By the import description, the content of the file is impossible.
     #[error("{file}: {problem}")]
     Implausible {

@@ -45,6 +45,14 @@ fn bench_csv(places_um: &[f64]) -> String {
     text
 }
 
+/// The same with a column `f`, the number of steps as mN.
+fn with_force(csv: &str) -> String {
+    let mut rows = csv.lines();
+    let head = rows.next().unwrap();
+    let rows = rows.map(|row| format!("{row},{}\n", row.rsplit_once(',').unwrap().1));
+    format!("{head},f\n{}", rows.collect::<String>())
+}
+
 struct Bench {
     folder: TempDir,
 }
@@ -264,13 +272,10 @@ fn any_field_can_differ_for_some_files() {
 fn a_column_can_number_the_presses_and_hold_the_force() {
     let description = BENCH
         .replace("split = \"return-to-rest\"", "split = \"column\", column = \"x\"")
-        .replace(
-            "zero =",
-            "force = { column = \"steps\", unit = \"mN\" }\n# zero =",
-        )
+        .replace("zero =", "force = { column = \"f\", unit = \"mN\" }\n# zero =")
         .replace("column = \"a\"", "column = \"a\", offset_kpa = -100.0")
         .replace("column = \"b\"", "column = \"b\", offset_kpa = -100.0");
-    let (recording, _) = read(&description, &bench_csv(&[0.0, 500.0])).unwrap();
+    let (recording, _) = read(&description, &with_force(&bench_csv(&[0.0, 500.0]))).unwrap();
     assert_eq!(
         recording
             .presses
@@ -284,6 +289,72 @@ fn a_column_can_number_the_presses_and_hold_the_force() {
     assert_eq!(recording.presses[0].control, Control::Pose);
     // Without a zero, readings are as in the file.
     assert!(recording.presses[0].taxels_kpa[0][0].abs() < 1e-9);
+}
+
+#[test]
+fn what_looks_like_a_wrong_unit_height_or_sign_is_said() {
+    let warnings = |old: &str, new: &str| {
+        let with_force_column = BENCH.replace("zero =", "force = { column = \"f\", unit = \"mN\" }\nzero =");
+        assert_eq!(with_force_column.matches(old).count(), 1, "{old}");
+        let description = with_force_column.replace(old, new);
+        // Three locations; the force begins 1 mm above the deepest point, at contact.
+        let csv = with_force(&bench_csv(&[0.0, 500.0, 900.0]));
+        let (head, rows) = csv.split_once('\n').unwrap();
+        let rows = rows.lines().map(|row| {
+            let (row, steps) = row.rsplit_once(',').unwrap();
+            format!("{row},{}\n", (steps.parse::<f64>().unwrap() - 200.0).max(0.0))
+        });
+        let csv = format!("{head}\n{}", rows.collect::<String>());
+        match read(&description, &csv) {
+            Ok((_, summary)) => summary.files[0].warnings.join("\n"),
+            Err(error) => error.to_string(),
+        }
+    };
+    // Only that the file ends before the tip is back.
+    assert_eq!(warnings("provenance", "provenance").lines().count(), 1);
+    for (old, new, says) in [
+        ("unit = \"ms\"", "unit = \"s\"", "the unit of `time`"),
+        (
+            "unit = \"Pa\"",
+            "unit = \"kPa\"",
+            "1000 times the pressure of the air",
+        ),
+        (
+            "unit = \"Pa\"",
+            "unit = \"hPa\"",
+            "100 times the pressure of the air",
+        ),
+        ("unit = \"mN\"", "unit = \"mN\", scale = -1.0", "other sign"),
+        ("z_mm = 2.0", "z_mm = 0.6", "below the surface of the gel"),
+        (
+            "divide_by = 100.0 }\ncontact = { z_mm = 2.0",
+            "divide_by = 50.0 }\ncontact = { z_mm = 5.5",
+            "above the gel",
+        ),
+    ] {
+        let found = warnings(old, new);
+        assert!(found.contains(says), "{new}: {found}");
+    }
+}
+
+#[test]
+fn the_same_recording_twice_is_refused() {
+    let bench = Bench::with(&[
+        ("one.csv", &bench_csv(&[0.0, 500.0])),
+        ("two.csv", &bench_csv(&[500.0])),
+        ("copy.csv", &bench_csv(&[0.0, 500.0])),
+    ]);
+    let import = Import::parse("bench.toml", BENCH).unwrap();
+    let paths = |names: &[&str]| names.iter().map(|name| bench.path(name)).collect::<Vec<_>>();
+    let error = import
+        .read_all(&paths(&["one.csv", "two.csv", "copy.csv"]))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("one.csv: press `one#1` has the same times"),
+        "{error}"
+    );
+    import.read_all(&paths(&["one.csv", "two.csv"])).unwrap();
 }
 
 #[test]
@@ -318,6 +389,24 @@ fn static_presses_lose_isolated_outliers_but_no_peaks() {
     let peak = &recording.presses[20 * 10 + 10];
     assert!((peak.taxels_kpa[0][0] - 6.894_757).abs() < 1e-6);
     assert_eq!((peak.control, &peak.force_n), (Control::Force, &Some(vec![0.98])));
+}
+
+#[test]
+fn one_column_is_not_read_as_two_quantities() {
+    for (old, new, field) in [
+        ("x = { column = \"x\"", "x = { column = \"steps\"", "`z`"),
+        ("column = \"ms\"", "column = \"x\"", "`x`"),
+        ("column = \"b\"", "column = \"steps\"", "`taxels`"),
+        ("zero =", "force = { column = \"a\" }\nzero =", "`taxels`"),
+    ] {
+        let error = Import::parse("bench.toml", &BENCH.replace(old, new))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains(field) && error.contains("reads as well"),
+            "{new}: {error}"
+        );
+    }
 }
 
 #[test]

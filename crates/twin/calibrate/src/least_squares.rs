@@ -29,7 +29,7 @@ const EXACT: f64 = 1e-16;
 pub(crate) struct Solution {
     pub(crate) x: Vec<f64>,
     pub(crate) evaluation: Evaluation,
-    /// The derivatives at `x`, corrected by rejected steps.
+    /// The derivatives, computed at `x`.
     pub(crate) jacobian: Vec<Vec<f64>>,
     pub(crate) iterations: u32,
     /// Whether the search ended because no further step promised a smaller error.
@@ -60,6 +60,9 @@ struct Derivatives {
     rows: Vec<Vec<f64>>,
     /// Whether they were computed at this point, and not only corrected on the way to it.
     are_computed: bool,
+    /// Whether rejected steps have corrected them at this point. After many short ones they contain
+    /// the noise of the simulations, over the lengths of the steps.
+    are_corrected: bool,
 }
 
 impl Derivatives {
@@ -98,6 +101,7 @@ impl<'a> Squares<'a> {
         let derivatives = Derivatives {
             rows: problem.jacobian(x, at)?,
             are_computed: true,
+            are_corrected: false,
         };
         Ok(Self {
             problem,
@@ -112,6 +116,7 @@ impl<'a> Squares<'a> {
     fn compute(&mut self, at: &Evaluation) {
         if let Ok(rows) = self.problem.jacobian(&self.x, at) {
             self.derivatives.rows = rows;
+            self.derivatives.are_corrected = false;
         }
         self.derivatives.are_computed = true;
     }
@@ -135,7 +140,7 @@ impl twintac_fit::Problem for Squares<'_> {
         let way = self.way_to(x);
         if way.iter().any(|way| *way != 0.0) {
             self.derivatives.correct(&way, &self.residuals, &at.residuals);
-            self.derivatives.are_computed = false;
+            (self.derivatives.are_computed, self.derivatives.are_corrected) = (false, false);
             (self.x, self.residuals) = (x.to_owned(), at.residuals.clone());
             if at.has_rates {
                 self.compute(at);
@@ -149,6 +154,7 @@ impl twintac_fit::Problem for Squares<'_> {
             self.compute(here);
         }
         self.derivatives.correct(way, &self.residuals, &there.residuals);
+        self.derivatives.are_corrected = true;
         true
     }
 }
@@ -187,7 +193,7 @@ pub(crate) fn minimize(
         let Ok(found) = twintac_fit::minimize(&mut squares, &ranges, start, &method, &mut tell);
         iterations += found.n_steps;
         let was_computed = squares.derivatives.are_computed;
-        if !was_computed {
+        if !was_computed || squares.derivatives.are_corrected {
             squares.compute(&found.at);
         }
         if was_computed || !found.is_settled {

@@ -5,7 +5,9 @@ use twintac_softbody::SolveError;
 /// Why the solver could not take a step, and which setting may help.
 pub(crate) fn reason(error: &SolveError) -> String {
     match error {
-        SolveError::PassedThrough { .. } => format!("{error}: settings `contact_edge_mm` and `max_nodes`"),
+        SolveError::PassedThrough { .. } | SolveError::Pulled { .. } => {
+            format!("{error}: settings `contact_edge_mm` and `max_nodes`")
+        }
         _ => error.to_string(),
     }
 }

@@ -6,7 +6,9 @@ use std::path::Path;
 use anyhow::Result;
 use twintac_gel::simulated::SimulatedPath;
 use twintac_recording::Provenance;
+use twintac_sensor::Sensor;
 use twintac_simulate::{Followed, FollowedFrame, Gel};
+use twintac_work::Progress;
 
 use crate::arguments::Simulate;
 use crate::output::{print, print_csv};
@@ -19,7 +21,10 @@ pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     if arguments.json {
         print(&serde_json::to_string_pretty(&simulated)?)?;
     } else {
-        print_csv(table(followed, arguments.deadline_ms.is_some()))?;
+        print_csv(table(&simulated, gel.sensor(), arguments.deadline_ms.is_some()))?;
+    }
+    if let Some(note) = beyond_limits(followed, gel.sensor()) {
+        Bars::default().note(&format!("{}: {note}", path.display()));
     }
     if arguments.profile {
         write_profile(&mut std::io::stderr().lock(), followed)?;
@@ -34,9 +39,30 @@ pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     }
 }
 
+/// Says where a path goes beyond what the sensor withstands. The gel is computed there as well.
+fn beyond_limits(followed: &Followed, sensor: &Sensor) -> Option<String> {
+    let limits = sensor.limits?;
+    let is_beyond =
+        |frame: &&FollowedFrame| frame.depth_mm > limits.depth_mm || frame.force_n.length() > limits.force_n;
+    let first = followed.frames.iter().find(is_beyond)?;
+    Some(format!(
+        "from {} s on ({:.2} mm, {:.2} N) it goes beyond the `limits` of `{}`, {} mm and {} N: a real sensor would not withstand it",
+        first.time_s,
+        first.depth_mm,
+        first.force_n.length(),
+        sensor.name,
+        limits.depth_mm,
+        limits.force_n
+    ))
+}
+
 /// Columns with their units, and rows. With a deadline, three more columns: whether each frame has
 /// converged, its residual, and how far its indenter is behind the path.
-fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<String>> {
+fn table(
+    simulated: &SimulatedPath,
+    sensor: &Sensor,
+    with_deadline: bool,
+) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 8] = [
         "provenance",
         "time_s",
@@ -47,14 +73,16 @@ fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<S
         "force_y_n",
         "force_z_n",
     ];
-    let names = followed.frames.first().map(|frame| frame.pressure_kpa.keys());
+    let taxels = sensor.taxels.iter().map(|taxel| taxel.name.clone());
+    let points = simulated.path.points.iter().map(|point| point.name.clone());
+    let names: Vec<String> = taxels.chain(points).collect();
     let mut head = HEAD.map(str::to_owned).to_vec();
-    head.extend(names.into_iter().flatten().map(|name| format!("{name}_kpa")));
+    head.extend(names.iter().map(|name| format!("{name}_kpa")));
     if with_deadline {
         head.extend(["converged", "residual", "behind_mm"].map(str::to_owned));
     }
     let with_quality = move |frame: &FollowedFrame| {
-        let mut row = row(frame);
+        let mut row = row(frame, &names);
         if with_deadline {
             row.extend([
                 frame.converged.to_string(),
@@ -64,15 +92,19 @@ fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<S
         }
         row
     };
-    std::iter::once(head).chain(followed.frames.iter().map(with_quality))
+    std::iter::once(head).chain(simulated.followed.frames.iter().map(with_quality))
 }
 
-fn row(frame: &FollowedFrame) -> Vec<String> {
+fn row(frame: &FollowedFrame, names: &[String]) -> Vec<String> {
     let (at, force) = (frame.position_mm, frame.force_n);
     let mut row = vec![Provenance::Simulated.to_string()];
     row.extend([frame.time_s, at.x, at.y, at.z].map(|number| number.to_string()));
     row.extend([force.x, force.y, force.z].map(|force_n| format!("{force_n:.6}")));
-    row.extend(frame.pressure_kpa.values().map(|kpa| format!("{kpa:.5}")));
+    row.extend(
+        names
+            .iter()
+            .map(|name| format!("{:.5}", frame.pressure_kpa[name])),
+    );
     row
 }
 

@@ -31,6 +31,9 @@ pub fn read_recording(stage: &Finished) -> Result<Recording, WorkError> {
     Ok(Recording::read_parquet(&stage.file(PRESSES))?)
 }
 
+/// Heights of a gel that differ by less are the same height, measured twice, mm.
+const LEVEL_MM: f64 = 1.0;
+
 /// An input file. Its name is that of a mounting (one installation of sensor and indenter). Its
 /// content is identified by the digest; its path does not count.
 #[derive(Serialize)]
@@ -59,6 +62,7 @@ impl Stage for Importing<'_> {
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let files: Vec<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
+        check_heights(&self.sensor.sensor, &self.import, &files)?;
         let (mut recording, summary) = self.import.read_all(&files)?;
         tell(&summary, progress);
         check_sensor(&self.sensor.sensor, &recording)?;
@@ -66,6 +70,22 @@ impl Stage for Importing<'_> {
         recording.write_parquet(&folder.join(PRESSES))?;
         Ok(write_json(&folder.join("summary.json"), &summary)?)
     }
+}
+
+/// Checks that the import description and the sensor's have the top of the gel at the same height.
+fn check_heights(sensor: &Sensor, import: &Import, files: &[PathBuf]) -> Result<(), WorkError> {
+    let top_mm = sensor.gel.solid.bounds_mm(&sensor.surfaces).1.z;
+    for file in files {
+        let imported_mm = import.gel_top_mm(file)?;
+        if (imported_mm - top_mm).abs() > LEVEL_MM {
+            return Err(WorkError::Input(format!(
+                "{}: `gel_top_mm` of the import description is {imported_mm}, but the gel of `{}` is {top_mm} mm high; give both the same height above the board",
+                file.display(),
+                sensor.name
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Reports files of which something was left out.

@@ -445,6 +445,7 @@ fn kind(error: &SolveError) -> &'static str {
         SolveError::Inverted { .. } => "inside out",
         SolveError::Singular { .. } => "singular",
         SolveError::PassedThrough { .. } => "passed through",
+        SolveError::Pulled { .. } => "slipped around",
         SolveError::Blocked { .. } => "blocked",
         SolveError::ForceNotReached { .. } => "force not reached",
         SolveError::Input { .. } => "refused",

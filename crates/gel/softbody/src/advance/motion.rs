@@ -7,7 +7,7 @@ use super::drive::{Drive, way_mm};
 use crate::SolveError;
 use crate::body::SoftBody;
 use crate::clock::Instant;
-use crate::contact::{Contact, PassedThrough, RigidBody};
+use crate::contact::{Contact, PassedThrough, Pulled, RigidBody};
 use crate::frame::Frame;
 use crate::newton::{Equilibrium, Failure, Start};
 use crate::parallel::on_two_threads;
@@ -223,6 +223,11 @@ impl SoftBody {
                             at_mm,
                             reach_mm,
                             thickness_mm,
+                            edge_mm,
+                        },
+                        Failure::Pulled(Pulled { at_mm, edge_mm }) => SolveError::Pulled {
+                            fraction: done,
+                            at_mm,
                             edge_mm,
                         },
                     });

@@ -202,6 +202,9 @@ impl SoftBody {
             if let Some(passed) = contact.pierced(now, &now_mm).or_else(changed) {
                 return Err(Failure::PassedThrough(passed));
             }
+            if let Some(pulled) = contact.pulled(&self.boundary, &now_mm) {
+                return Err(Failure::Pulled(pulled));
+            }
         }
         Ok(())
     }

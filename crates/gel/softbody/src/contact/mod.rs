@@ -28,7 +28,7 @@ mod triangle;
 pub(crate) use all::for_each_contact;
 pub(crate) use boundary::Boundary;
 pub(crate) use clash::clash;
-pub(crate) use pierce::PassedThrough;
+pub(crate) use pierce::{PassedThrough, Pulled};
 pub(crate) use point::ContactPoint;
 pub(crate) use rigid_body::RigidBody;
 pub(crate) use state::Contact;

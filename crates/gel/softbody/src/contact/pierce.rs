@@ -23,6 +23,11 @@ const MOST_OF_THICKNESS: f64 = 0.6;
 /// ends are on opposite sides of a shape.
 const OPPOSITE: f64 = -0.5;
 
+/// A shape pulls at a node, instead of pressing it, if the cosine of the angle between its outward
+/// normal and those of all triangles around the node is above this. Where it presses, cosines are
+/// near -1; at edges of a body, some of them can be above 0.
+const PULLS: f64 = 0.5;
+
 /// A point with a smaller depth than this is on the surface, mm.
 const ON_SURFACE_MM: f64 = 1e-3;
 
@@ -37,6 +42,14 @@ pub(crate) struct PassedThrough {
     pub(crate) reach_mm: f64,
     /// Thickness of the shape there, mm.
     pub(crate) thickness_mm: f64,
+    /// Longest edge of the boundary's triangles there, mm.
+    pub(crate) edge_mm: f64,
+}
+
+/// A node of the body's surface that a shape would pull at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pulled {
+    pub(crate) at_mm: DVec3,
     /// Longest edge of the boundary's triangles there, mm.
     pub(crate) edge_mm: f64,
 }
@@ -68,6 +81,30 @@ impl Contact {
                 thickness_mm,
                 edge_mm,
             })
+        })
+    }
+
+    /// A node that the shape would pull at: its normal points along the outward normals of all
+    /// triangles around the node, instead of against them. The body has slipped around the shape,
+    /// and the nearest way out is on the far side. `None` if there is no such node.
+    pub(crate) fn pulled(&self, boundary: &Boundary, node_mm: &dyn Fn(u32) -> DVec3) -> Option<Pulled> {
+        let is_touched = |corner: usize| self.touches[corner].force_n > 0.0;
+        // The smallest cosine of the angle between the normals, at each node.
+        let mut cosines = vec![f64::INFINITY; self.touches.len()];
+        for triangle in &boundary.triangles {
+            if !triangle.free_corners().any(is_touched) {
+                continue;
+            }
+            let [a, b, c] = triangle.nodes.map(node_mm);
+            let outwards = (b - a).cross(c - a).normalize_or_zero();
+            for corner in triangle.free_corners() {
+                cosines[corner] = cosines[corner].min(self.touches[corner].normal.dot(outwards));
+            }
+        }
+        let pulled = (0..cosines.len()).find(|&node| is_touched(node) && cosines[node] > PULLS)?;
+        Some(Pulled {
+            at_mm: node_mm(boundary.nodes[pulled].corners()[0]),
+            edge_mm: boundary.reach_mm[pulled],
         })
     }
 

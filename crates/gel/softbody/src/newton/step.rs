@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::contact::{Contact, PassedThrough, RigidBody};
+use crate::contact::{Contact, PassedThrough, Pulled, RigidBody};
 use crate::element::Response;
 
 /// A step to solve: everything that is fixed while the displacements are computed.
@@ -52,6 +52,7 @@ pub(crate) enum Failure {
     Inverted,
     Singular,
     PassedThrough(PassedThrough),
+    Pulled(Pulled),
 }
 
 /// The end of a step that succeeded.

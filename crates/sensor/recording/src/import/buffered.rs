@@ -61,16 +61,16 @@ mod tests {
             drop_buffered = true
             gel_top_mm = 6.0
             time = { column = "t" }
-            z = { column = "t" }
+            z = { column = "z" }
             readings = { unit = "kPa" }
-            taxels = [{ name = "S0", column = "t" }]
+            taxels = [{ name = "S0", column = "p" }]
             presses = { split = "return-to-rest" }
         "#;
         let import = Import::parse("bench.toml", text).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.csv");
-        let rows: String = times.iter().map(|time| format!("{time}\n")).collect();
-        std::fs::write(&path, format!("t\n{rows}")).unwrap();
+        let rows: String = times.iter().map(|time| format!("{time},0,0\n")).collect();
+        std::fs::write(&path, format!("t,z,p\n{rows}")).unwrap();
         let description = import.descriptions.for_file(&path).unwrap();
         let table = Table::read(&path, &description, &description.wanted_of(None)).unwrap();
         leading_rows(&table, &times_s(&table, description.time.as_ref()), &description)

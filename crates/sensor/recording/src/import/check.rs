@@ -1,6 +1,6 @@
 //! Checks of an import description.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DQuat;
 use twintac_config::{ConfigError, Document};
@@ -234,6 +234,34 @@ fn check_taxels(d: &Description) -> Result<(), Problem> {
 }
 
 fn check_columns(d: &Description) -> Result<(), Problem> {
+    let mut read: BTreeMap<&str, &str> = BTreeMap::new();
+    let columns = [
+        ("time", d.time.as_ref().and_then(|time| time.column.as_deref())),
+        ("x", d.x.column.as_deref()),
+        ("y", d.y.column.as_deref()),
+        ("z", d.z.as_ref().and_then(|z| z.column.as_deref())),
+        (
+            "force",
+            d.force.as_ref().and_then(|force| force.column.as_deref()),
+        ),
+    ];
+    let taxels = d
+        .taxels
+        .iter()
+        .map(|taxel| ("taxels", Some(taxel.column.as_str())));
+    for (field, column) in columns.into_iter().chain(taxels) {
+        let Some(column) = column else { continue };
+        let other = read.insert(column, field);
+        require(
+            other.is_none(),
+            field,
+            format!(
+                "reads the column `{column}`, which `{}` reads as well",
+                other.unwrap_or_default()
+            ),
+            "give each quantity a column of its own",
+        )?;
+    }
     check_column("x", &d.x)?;
     check_column("y", &d.y)?;
     d.z.as_ref().map_or(Ok(()), |column| check_column("z", column))?;

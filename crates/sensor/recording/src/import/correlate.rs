@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use super::median::median;
+
 /// A linear relation between two clocks: `offset_s + rate · time_s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
@@ -258,24 +260,19 @@ fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
         let later = points[index + 1..].iter().filter(|(other_s, _)| other_s > one_s);
         slopes.extend(later.map(|(other_s, other)| (other - one) / (other_s - one_s)));
     }
-    let slope = median(&mut slopes)?;
-    let mut zeros: Vec<f64> = points.iter().map(|(at_s, lag)| lag - slope * at_s).collect();
-    let zero = median(&mut zeros)?;
-    let mut off: Vec<f64> = points
+    let slope = median(slopes)?;
+    let zeros: Vec<f64> = points.iter().map(|(at_s, lag)| lag - slope * at_s).collect();
+    let zero = median(zeros)?;
+    let off: Vec<f64> = points
         .iter()
         .map(|(at_s, lag)| (lag - slope * at_s - zero).abs())
         .collect();
-    Some((zero, slope, median(&mut off)?))
-}
-
-fn median(numbers: &mut [f64]) -> Option<f64> {
-    numbers.sort_unstable_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied()
+    Some((zero, slope, median(off)?))
 }
 
 fn median_step_s(activity: &Activity) -> f64 {
-    let mut steps: Vec<f64> = activity.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    median(&mut steps).unwrap_or(0.01).max(1e-4)
+    let steps = activity.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    median(steps.collect()).unwrap_or(0.01).max(1e-4)
 }
 
 /// A signal with linear interpolation, evaluated at increasing times.

@@ -12,11 +12,13 @@ mod description;
 mod guess;
 mod header;
 mod join;
+mod median;
 mod open;
 mod outliers;
 mod plausible;
 mod split;
 mod summary;
+mod suspicious;
 mod table;
 mod text;
 mod track;
@@ -151,6 +153,14 @@ impl Import {
     /// `zero`.
     pub fn read_csv(&self, path: &Path) -> Result<(Recording, ImportSummary), RecordingError> {
         self.read_all(std::slice::from_ref(&path))
+    }
+
+    /// Height of the unloaded gel above the board that the description gives for a file, mm.
+    ///
+    /// # Errors
+    /// Overrides for this file contradict each other.
+    pub fn gel_top_mm(&self, path: &Path) -> Result<f64, RecordingError> {
+        Ok(self.descriptions.for_file(path)?.gel_top_mm)
     }
 
     /// Whether the files contain presses. Otherwise they contain only readings.
@@ -313,6 +323,8 @@ fn read_file(
     if !matches!(description.presses, Split::None) {
         plausible::check(&file, &track, &spans, description)?;
     }
+    let unusual = suspicious::units(&track, description);
+    unusual.into_iter().for_each(|warning| summary.warn(warning));
     for (index, span) in spans.into_iter().enumerate() {
         let number = index + 1;
         let Some(zero_kpa) = zero::before_press(&track, span.clone(), description) else {
@@ -348,6 +360,8 @@ fn read_file(
         summary.outliers = outliers::mark(&mut presses, outliers);
     }
     summary.presses = presses.len();
+    let unusual = suspicious::presses(&presses, description);
+    unusual.into_iter().for_each(|warning| summary.warn(warning));
     if presses.is_empty() {
         return Err(RecordingError::NoPresses {
             file,

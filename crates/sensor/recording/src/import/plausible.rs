@@ -8,7 +8,7 @@ use super::track::Track;
 use crate::RecordingError;
 
 /// Absolute readings of an untouched sensor are in this range: atmospheric pressure, kPa.
-const AIR_KPA: Range<f64> = 80.0..115.0;
+pub(super) const AIR_KPA: Range<f64> = 80.0..115.0;
 
 /// Refuses a file in which no press reaches the gel, and readings near atmospheric pressure from
 /// which no zero is subtracted.
@@ -35,16 +35,8 @@ pub(crate) fn check(
     }
     if description.zero.is_none() {
         for (taxel, line) in description.taxels.iter().enumerate() {
-            let mut kpa: Vec<f64> = (0..track.time_s.len())
-                .filter(|&row| track.usable[taxel][row])
-                .map(|row| track.kpa(row, taxel, description))
-                .collect();
-            let middle = kpa.len() / 2;
-            if kpa.is_empty() {
-                continue;
-            }
-            let (_, median_kpa, _) = kpa.select_nth_unstable_by(middle, f64::total_cmp);
-            if AIR_KPA.contains(median_kpa) {
+            let median_kpa = track.median_kpa(taxel, description);
+            if let Some(median_kpa) = median_kpa.filter(|kpa| AIR_KPA.contains(kpa)) {
                 let hint = if matches!(description.presses, Split::Row) {
                     "subtract its untouched reading with `offset_kpa`"
                 } else {

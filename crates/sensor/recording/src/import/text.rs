@@ -9,6 +9,18 @@ use crate::RecordingError;
 /// Number of bytes that are examined to recognise UTF-16 without a byte-order mark.
 const LOOKED_AT: usize = 64;
 
+/// Formats of files that are not texts, and the bytes that they start with.
+const PACKED: [(&str, &[u8]); 8] = [
+    ("gzip", b"\x1f\x8b"),
+    ("zip", b"PK\x03\x04"),
+    ("Zstandard", b"\x28\xb5\x2f\xfd"),
+    ("xz", b"\xfd7zXZ"),
+    ("bzip2", b"BZh"),
+    ("7z", b"7z\xbc\xaf"),
+    ("HDF5", b"\x89HDF\r\n"),
+    ("LZ4", b"\x04\x22\x4d\x18"),
+];
+
 /// The text of a file after the lines that are skipped.
 pub(crate) struct Text {
     /// The text in UTF-8.
@@ -26,6 +38,13 @@ impl Text {
     /// Reads a file without its first lines.
     pub(crate) fn read(path: &Path, skip_lines: u64) -> Result<Self, RecordingError> {
         let mut bytes = std::fs::read(path).map_err(|source| RecordingError::read(path, source))?;
+        let packed = PACKED.iter().find(|(_, start)| bytes.starts_with(start));
+        if let Some((format, _)) = packed {
+            return Err(RecordingError::Implausible {
+                file: path.display().to_string(),
+                problem: format!("is not a text, but packed ({format}); unpack it first"),
+            });
+        }
         let mut notes = Vec::new();
         if let Cow::Owned(decoded) = decode(&bytes, &mut notes) {
             bytes = decoded;
@@ -113,6 +132,20 @@ fn utf16_order(bytes: &[u8]) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_packed_is_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        for (format, start) in PACKED {
+            std::fs::write(&path, start).unwrap();
+            let error = Text::read(&path, 0).err().unwrap().to_string();
+            assert!(
+                error.contains(format) && error.ends_with("unpack it first"),
+                "{error}"
+            );
+        }
+    }
 
     #[test]
     fn encodings_are_told_apart() {

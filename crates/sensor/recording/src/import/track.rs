@@ -7,6 +7,7 @@ use super::cell::Kind;
 use super::check::UNIT_TOLERANCE;
 use super::clock;
 use super::description::{Column, Description, Direction, Rotation, Split, TimeColumn};
+use super::median::median;
 use super::table::Table;
 use super::unit::Unit;
 use crate::{Press, RecordingError};
@@ -155,6 +156,13 @@ impl Track {
     pub(crate) fn kpa(&self, row: usize, taxel: usize, description: &Description) -> f64 {
         let line = &description.taxels[taxel];
         self.raw[taxel][row] * line.scale * description.readings.kpa() + line.offset_kpa
+    }
+
+    /// The median of a taxel's usable readings before zeros are subtracted, kPa; `None` if there
+    /// are none.
+    pub(crate) fn median_kpa(&self, taxel: usize, description: &Description) -> Option<f64> {
+        let rows = (0..self.time_s.len()).filter(|&row| self.usable[taxel][row]);
+        median(rows.map(|row| self.kpa(row, taxel, description)).collect())
     }
 }
 
