@@ -10,6 +10,9 @@ use crate::Variable;
 
 /// The gel's height. For a block it is the size along z.
 const HEIGHT: &str = "gel.height_mm";
+/// The limit of depth of a gel that is lower than the limit of the description, as a fraction of its
+/// height.
+const LOW: f64 = 0.5;
 /// The smallest distance between two ports, seen from above. All ports move in proportion, and the
 /// sides of a block move as far as the outermost ports.
 const PITCH: &str = "taxels.pitch_mm";
@@ -79,6 +82,12 @@ fn set_height(table: &mut Table, height_mm: f64) -> Result<(), WorkError> {
         ))
     })?;
     size[2] = height_mm.into();
+    let limits = table.get_mut("limits").and_then(Value::as_table_mut);
+    if let Some(limit) = limits.and_then(|limits| limits.get_mut("depth_mm"))
+        && number(limit) >= height_mm
+    {
+        *limit = (LOW * height_mm).into();
+    }
     Ok(())
 }
 
@@ -268,6 +277,14 @@ mod tests {
             .collect();
         assert!((pitch(&places).unwrap() - 9.0).abs() < 1e-9);
         assert_eq!(places[0], [-13.5, -4.5]);
+    }
+
+    #[test]
+    fn a_gel_that_is_lower_than_its_limit_of_depth_has_a_lower_limit() {
+        for (height_mm, limit_mm) in [(4.0, 2.0), (5.0, 2.5), (6.0, 5.0)] {
+            let lower = varied(&[("gel.height_mm", height_mm)]).unwrap().sensor;
+            assert_eq!(lower.limits.unwrap().depth_mm, limit_mm);
+        }
     }
 
     #[test]
