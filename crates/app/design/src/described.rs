@@ -10,8 +10,8 @@ use crate::Variable;
 
 /// The gel's height. For a block it is the size along z.
 const HEIGHT: &str = "gel.height_mm";
-/// The limit of depth of a gel that is lower than the limit of the description, as a fraction of its
-/// height.
+/// The limit of depth of a gel that is lower than the limit of the description, as a fraction of
+/// its height.
 const LOW: f64 = 0.5;
 /// The smallest distance between two ports, seen from above. All ports move in proportion, and the
 /// sides of a block move as far as the outermost ports.
