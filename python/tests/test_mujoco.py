@@ -54,7 +54,6 @@ GEOMS = {
 }
 
 
-@pytest.mark.parametrize("kind", GEOMS)
 @pytest.mark.parametrize(
     ("place", "match"),
     [
@@ -72,6 +71,7 @@ def test_a_sensor_is_not_added_at_a_place_that_is_none(place: dict[str, tuple[fl
     assert not spec.sites
 
 
+@pytest.mark.parametrize("kind", GEOMS)
 def test_a_geom_is_felt_as_its_shape(kind: str) -> None:
     geom, below_m, shape = GEOMS[kind]
     found = model(f'<body name="thing"><freejoint/><geom {geom} mass="1"/></body>')
