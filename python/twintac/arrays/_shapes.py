@@ -155,7 +155,9 @@ def plane() -> Shapes:
 
 def mesh(shape: Shape) -> Shapes:
     """Any `Shape` by samples of its distance, in its own frame: triangle meshes (`Shape.surface`,
-    `Shape.stl`), unions, rings. Sampling takes from a millisecond to a second.
+    `Shape.stl`), unions, rings. Sampling takes from a millisecond to several seconds, for shapes of
+    many triangles and for large ones. The readings of a body that is pressed deeper than it is
+    thick are too low, down to zero: samples do not say that a gel is never above a body.
     """
     samples, bounds_mm = sampled(shape)
     middle_mm, half_mm = bounds_mm.mean(axis=0), 0.5 * (bounds_mm[1] - bounds_mm[0])
