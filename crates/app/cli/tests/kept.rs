@@ -326,7 +326,7 @@ const WORKS: [Work; 10] = [
     },
     Work {
         commands: &[
-            "fast train --sensor @sensor.toml --own-indenters --lessons 5 --exams 1 --steps 20 --out @fast",
+            "fast train --sensor @sensor.toml --own-indenters --training-presses 5 --test-presses 1 --steps 20 --out @fast",
             "dataset --sensor @sensor.toml --fast @fast/fast.safetensors --protocol @protocol.toml --presses 2 --out @felt",
         ],
         results: &[
@@ -634,7 +634,7 @@ fn a_folder_in_use_is_refused() {
         "train --run @run",
         "cross-validate --run @run --seeds 1",
         "reproduce --paper --quick --out @paper",
-        "fast train --sensor @sensor.toml --lessons 5 --exams 1 --steps 1 --out @fast",
+        "fast train --sensor @sensor.toml --training-presses 5 --test-presses 1 --steps 1 --out @fast",
     ] {
         let refused = desk.all(&[command]).unwrap_err();
         assert!(

@@ -57,13 +57,12 @@ struct Header {
     error_of_one_lesson: f32,
 }
 
-/// PhysTac's surrogate, made by
-/// `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
+/// PhysTac's surrogate, made by `twintac fast train --sensor sensors/phystac.toml
+/// --training-presses 2000 --test-presses 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
-/// The fingertip's surrogate, made by
-/// `twintac fast train --sensor sensors/phystac-tip.toml --lessons 800 --exams 50 --slides 8
-/// --steps 8000`.
+/// The fingertip's surrogate, made by `twintac fast train --sensor sensors/phystac-tip.toml
+/// --training-presses 800 --test-presses 50 --slides 8 --steps 8000`.
 const PHYSTAC_TIP: &[u8] = include_bytes!("../built_in/phystac-tip.safetensors");
 
 impl FastGel {

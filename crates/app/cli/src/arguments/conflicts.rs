@@ -59,6 +59,8 @@ fn what_goes_together_is_taken() {
         "simulate --run r",
         "simulate --sensor s --protocol p --out o --seed 3 --vtk --settings t",
         "simulate --sensor s --path p --json --profile --settings t --deadline-ms 15",
+        "fast train --sensor s --out o --training-presses 9 --test-presses 1",
+        "fast train --sensor s --out o --lessons 9 --exams 1",
         "reproduce --paper --quick --json --seed 3",
         "reproduce --sensor s --recordings r.csv --settings t --seed 3",
         "mesh --sensor s --out o",

@@ -16,11 +16,11 @@ pub(crate) struct FastTrain {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Number of training presses [default: 2000].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(5..))]
-    pub(crate) lessons: Option<u64>,
+    #[arg(long, alias = "lessons", value_name = "N", value_parser = clap::value_parser!(u64).range(5..))]
+    pub(crate) training_presses: Option<u64>,
     /// Number of test presses of shapes that are not used for training [default: 100].
-    #[arg(long, value_name = "N")]
-    pub(crate) exams: Option<u64>,
+    #[arg(long, alias = "exams", value_name = "N")]
+    pub(crate) test_presses: Option<u64>,
     /// Number of test presses of such shapes that slide and tilt [default: 40].
     #[arg(long, value_name = "N")]
     pub(crate) slides: Option<u64>,

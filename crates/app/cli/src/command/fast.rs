@@ -14,8 +14,8 @@ use crate::output::print;
 pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let mut settings = FastSettings::default();
-    settings.n_lessons = arguments.lessons.unwrap_or(settings.n_lessons);
-    settings.n_exams = arguments.exams.unwrap_or(settings.n_exams);
+    settings.n_lessons = arguments.training_presses.unwrap_or(settings.n_lessons);
+    settings.n_exams = arguments.test_presses.unwrap_or(settings.n_exams);
     settings.n_slides = arguments.slides.unwrap_or(settings.n_slides);
     settings.own_indenters = arguments.own_indenters;
     if let Some(steps) = arguments.steps {
