@@ -189,7 +189,7 @@ def test_things_that_a_gel_holds_are_told_apart(ball: Body) -> None:
     with pytest.raises(Error, match="8 taxels without a twin, expected `phystac`, 1 taxels"):
         SensorBatch(gel.with_ports([[0.0, 0.0]]), [ball], 1).set_state(0, sensors.state(0))
     of_tip = SensorBatch(FastGel.phystac_tip(), [ball], 1).state(0)
-    with pytest.raises(Error, match="is `phystac-tip`, 8 taxels without a twin, expected `phystac`"):
+    with pytest.raises(Error, match="is of `phystac-tip`, 8 taxels without a twin, expected `phystac`"):
         SensorBatch(gel, [ball], 1).set_state(0, of_tip)
 
 
