@@ -132,6 +132,40 @@ fn a_whole_recording_is_imported() {
 }
 
 #[test]
+fn another_height_of_the_gel_than_the_sensors() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(recording(folder.path(), |_, _| ()).status.success());
+    let import = fs::read_to_string(root().join("imports/strip4.toml")).unwrap();
+    assert!(import.contains("gel_top_mm = 6.0"));
+    let description = folder.path().join("import.toml");
+    fs::write(
+        &description,
+        import.replace("gel_top_mm = 6.0", "gel_top_mm = 10.0"),
+    )
+    .unwrap();
+    let (sensor, file, out) = (
+        root().join("sensors/strip4-gel-d.toml"),
+        folder.path().join("gelD_invented.csv"),
+        folder.path().join("other"),
+    );
+    let output = twintac(&[
+        "import",
+        "--sensor",
+        text(&sensor),
+        "--import",
+        text(&description),
+        "--recordings",
+        text(&file),
+        "--out",
+        text(&out),
+    ]);
+    refused(
+        &output,
+        &["gelD_invented.csv", "`gel_top_mm`", "is 10", "6 mm high"],
+    );
+}
+
+#[test]
 fn a_missing_column() {
     let folder = tempfile::tempdir().unwrap();
     let output = recording(folder.path(), |_, cells| {

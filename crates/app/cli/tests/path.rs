@@ -106,6 +106,28 @@ fn force_and_pressures_are_those_of_other_codes() {
 }
 
 #[test]
+fn columns_are_in_the_order_of_the_description_and_limits_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let taxel =
+        "[[taxels]]\nname = \"a\"\nposition_mm = [-4.0, 4.0, 0.0]\nport_radius_mm = 1.0\nchannel = 1\n\n";
+    let limits = "[limits]\nforce_n = 200.0\ndepth_mm = 1.5\n\n[[indenters]]";
+    let sensor = SENSOR.replace("[[indenters]]", &format!("{taxel}{limits}"));
+    fs::write(folder.path().join("sensor.toml"), sensor).unwrap();
+    fs::write(folder.path().join("path.toml"), PATH).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_twintac"))
+        .args(["simulate", "--sensor", "sensor.toml", "--path", "path.toml"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let [out, said] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    assert!(output.status.success(), "{said}");
+    let head = out.lines().next().unwrap();
+    assert!(head.ends_with("corner_kpa,a_kpa,opposite_kpa"), "{head}");
+    assert_eq!(out.lines().count(), 5);
+    assert!(said.contains("path.toml: from 2 s on (2.00 mm, "), "{said}");
+}
+
+#[test]
 fn a_point_outside_the_gel_is_one_clear_error() {
     let folder = tempfile::tempdir().unwrap();
     let output = simulate(

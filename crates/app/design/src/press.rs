@@ -4,7 +4,7 @@ use glam::{DQuat, DVec2};
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthCurves, DepthTable, PressFrame};
 use twintac_fit::Triangle;
-use twintac_sensor::Sensor;
+use twintac_sensor::{ATMOSPHERE_KPA, Sensor};
 use twintac_shape::Shape;
 use twintac_simulate::{Gel, Keyframe, PressPlace};
 use twintac_store::{Keyed, Recipe};
@@ -17,9 +17,6 @@ const DEEPEST: f64 = 0.5;
 
 /// Step of the finite differences of readings with respect to the location, mm.
 const ASIDE_MM: f64 = 0.5;
-
-/// Pressure of the air, kPa. Chips read absolute pressures.
-const AIR_KPA: f64 = 101.325;
 
 /// A reading counts as detected above this many times its noise.
 const FELT: f64 = 3.0;
@@ -222,7 +219,7 @@ impl Pressed<'_> {
     /// The largest force that the chip can read and the limits allow, N, and what limits it.
     fn range(&self, table: &DepthTable, curves: &DepthCurves, taxel: usize) -> (f64, RangeEnd) {
         let sensor = self.gel.sensor();
-        let most_kpa = sensor.readout.max_kpa - AIR_KPA;
+        let most_kpa = sensor.readout.max_kpa - ATMOSPHERE_KPA;
         let saturates = |frame: &PressFrame| frame.port_pressure_kpa[taxel] >= most_kpa;
         let end = if table.failure.is_some() {
             RangeEnd::Solver

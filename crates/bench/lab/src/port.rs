@@ -18,8 +18,7 @@
 //! large pressure, which makes its bubble small. Assumptions: the bulge is small beside the port,
 //! and does not relax.
 
-/// Pressure of the air, kPa.
-pub(crate) const ATMOSPHERE_KPA: f64 = 101.325;
+use twintac_sensor::ATMOSPHERE_KPA;
 
 /// How a barometer's port changes the pressure of the gel.
 #[derive(Clone, Copy, Debug, PartialEq)]

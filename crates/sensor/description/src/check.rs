@@ -7,14 +7,12 @@ use twintac_config::{ConfigError, Document};
 use twintac_shape::{ExtentError, SignedDistance, Solid, Surfaces};
 
 use crate::file::SensorToml;
-use crate::{Indenter, Sensor, Taxel};
+use crate::{ATMOSPHERE_KPA, Indenter, Sensor, Taxel};
 
 /// Lengths that differ by less count as equal, mm.
 const TOLERANCE_MM: f64 = 1e-6;
 /// Gel above a port that is less high than this is none, mm.
 const COVER_MM: f64 = 1e-3;
-/// Absolute pressure of the air at sea level (ISO 2533), kPa.
-const AIR_KPA: f64 = 101.325;
 /// A surface from a file counts as standing on the board if the height of its lowest point is at
 /// most this, mm.
 const ON_BOARD_MM: f64 = 1e-3;
@@ -290,13 +288,13 @@ impl Checker<'_> {
             return Err(self.error("readout.max_kpa", problem, "give the larger pressure here"));
         }
         let (low, high) = (readout.min_kpa, readout.max_kpa);
-        if !(low..=high).contains(&AIR_KPA) {
-            let (field, value) = if low > AIR_KPA {
+        if !(low..=high).contains(&ATMOSPHERE_KPA) {
+            let (field, value) = if low > ATMOSPHERE_KPA {
                 ("min_kpa", low)
             } else {
                 ("max_kpa", high)
             };
-            let problem = format!("is {value}, and the pressure of the air is {AIR_KPA} kPa");
+            let problem = format!("is {value}, and the pressure of the air is {ATMOSPHERE_KPA} kPa");
             return Err(self.error(
                 &format!("readout.{field}"),
                 problem,

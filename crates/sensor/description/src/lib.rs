@@ -36,7 +36,9 @@ mod wiring;
 
 pub use indenter_file::IndenterFile;
 pub use material::GelMaterial;
-pub use sensor::{ConfirmedTransfer, Gel, Inclusion, Indenter, LoadLimits, Readout, Sensor, Shell, Taxel};
+pub use sensor::{
+    ATMOSPHERE_KPA, ConfirmedTransfer, Gel, Inclusion, Indenter, LoadLimits, Readout, Sensor, Shell, Taxel,
+};
 pub use sensor_file::SensorFile;
 pub use twintac_material::{Model, PronyTerm};
 pub use wiring::MOST_TAXELS;

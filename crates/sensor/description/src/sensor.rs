@@ -8,6 +8,9 @@ use twintac_shape::{Shape, Solid, SurfaceFile, Surfaces};
 
 use crate::GelMaterial;
 
+/// Absolute pressure of the air at sea level (ISO 2533), which an untouched barometer reads, kPa.
+pub const ATMOSPHERE_KPA: f64 = 101.325;
+
 /// Number of points on a port's rim.
 const RIM_POINTS: u32 = 16;
 

@@ -325,6 +325,17 @@ points = [{ name = "below", position_mm = [0.0, 0.0, 0.0], radius_mm = 1.0 }]
 "#;
 
     #[test]
+    fn a_rate_that_makes_one_frame_is_refused() {
+        let at = |rate: &str| PressPath::parse("path.toml", &PATH.replace("rate_hz = 4.0", rate));
+        let error = at("rate_hz = 0.4").unwrap_err().to_string();
+        assert!(
+            error.contains("`rate_hz`") && error.contains("second frame"),
+            "{error}"
+        );
+        assert_eq!(at("rate_hz = 0.5").unwrap().frames().len(), 2);
+    }
+
+    #[test]
     fn the_indenter_moves_evenly_between_poses() {
         let frames = PressPath::parse("path.toml", PATH).unwrap().frames();
         assert_eq!(frames.len(), 9);

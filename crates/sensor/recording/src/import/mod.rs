@@ -222,6 +222,7 @@ impl Import {
                         problem: mixed.to_string(),
                     };
                     recording.expect_alike(&next).map_err(different)?;
+                    recording.expect_no_copy(&next).map_err(different)?;
                     recording.presses.extend(next.presses);
                 }
             }
