@@ -92,6 +92,16 @@ impl Imperfection {
         })
     }
 
+    /// The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`. Gains,
+    /// noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
+    /// hysteresis, installation and faults are assumed.
+    #[staticmethod]
+    fn usual() -> Self {
+        Self {
+            imperfection: twintac::usual_imperfection(),
+        }
+    }
+
     /// All fields by name, including those that are 0.
     fn fields(&self, py: Python<'_>) -> PyResult<BTreeMap<String, f64>> {
         let mut bytes = Vec::new();

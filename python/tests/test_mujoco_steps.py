@@ -384,3 +384,22 @@ def test_worlds_that_do_not_go_on_together_are_refused() -> None:
         TouchSensors(found, ["touch"]).update(mujoco.MjData(found))
     with pytest.raises(ValueError, match="of another model"):
         TouchSensors(found, ["touch"]).update(mujoco.MjData(palm(BLOCK + '<geom size="0.01"/>')))
+
+
+def test_sensors_that_are_replaced_are_drawn_anew_and_those_of_a_number_are_the_same() -> None:
+    scene = Scene(palm(), imperfection=Imperfection(gain_deviation=0.2))
+
+    def readings_kpa(number: int) -> list[float]:
+        mujoco.mj_resetData(scene.model, scene.data)
+        scene.touch.replace(0, number)
+        assert not scene.touch.readings_kpa.any()
+        scene.step(100)
+        return list(map(float, scene.touch.readings_kpa[0, 0]))
+
+    scene.step(100)
+    at_first = list(map(float, scene.touch.readings_kpa[0, 0]))
+    other = readings_kpa(7)
+    assert other != at_first
+    assert readings_kpa(0) == at_first and readings_kpa(7) == other
+    with pytest.raises(ValueError, match="`world` is 1, there are 1"):
+        scene.touch.replace(1, 0)

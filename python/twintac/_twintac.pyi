@@ -1366,6 +1366,12 @@ class Imperfection:
         Raises `Error` with file, line and field if the file is wrong, and with the file if it
         cannot be read.
         """
+    @staticmethod
+    def usual() -> Imperfection:
+        """The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`. Gains,
+        noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
+        hysteresis, installation and faults are assumed.
+        """
     def fields(self) -> dict[str, float]:
         """All fields by name, including those that are 0."""
     def __eq__(self, other: object, /) -> bool: ...

@@ -1,14 +1,16 @@
 """Tasks of touch as Gymnasium environments: `gym.make("TwinTac/HoldForce-v0")`,
 `gym.make_vec("TwinTac/HoldForce-v0", num_envs=1024)`.
 
-Importing this module registers `TwinTac/ExploreShape-v0`, `TwinTac/HoldForce-v0` and
-`TwinTac/FollowEdge-v0`. All observations are simulated.
+Importing this module registers `TwinTac/ExploreShape-v0`, `TwinTac/HoldForce-v0`,
+`TwinTac/FollowEdge-v0` and `TwinTac/InHandTurn-v0`. All observations are simulated.
 
-Keywords of all three environments; vector environments also take `autoreset_mode` and `n_threads`:
+Keywords of all environments; vector environments also take `autoreset_mode` and `n_threads`:
 
 - `imperfection`: the sensor variation from which the sensor of each episode is drawn. The default
   is the variation of a working sensor; `twintac.Imperfection()` gives perfect sensors.
-- `gel`: a `twintac.FastGel`; PhysTac's unless given.
+- `gel`: a `twintac.FastGel`; that of the task's sensor unless given: phystac-tip's for InHandTurn,
+  PhysTac's for the others.
+- `touch`: for InHandTurn only, see there.
 - `render_mode`: `"rgb_array"`, or none.
 
 Observations are float32 from -10 to 10. `n` is the number of taxels, eight for PhysTac. Readings
@@ -53,6 +55,28 @@ episode has four such steps, and a last step without a press.
 - Terminated after the last step.
 - Info: `shape` (its number), `is_right` (whether the most probable shape is the right one),
   `probability_of_right`.
+
+InHandTurn: turn an object on the palm of a hand by a wanted angle, 15 to 90 degrees to the left or
+right, without seeing it. The object is a cylinder or a box of unknown size (24 to 38 mm wide), mass
+(30 to 120 g), place and rotation. Four fingers with a phystac-tip each stand around the palm; each
+has two joints, `swing`, sideways, and `close`, towards the middle. A step is 80 ms; an episode has
+60 steps. The worlds are simulated by MuJoCo, which must be version 4 or later.
+
+- Action `[8]`: target of each joint's servo: of `swing` -0.4 to 0.4 radians, of `close` -0.1 to 0.35
+  radians; of each finger in turn. A target moves by at most 40 % of its range in a step.
+- Observation `[4 (n + 16) + 2]`: four frames, of this step and the three before, the newest first;
+  the wanted angle, times 90 degrees, positive to the left as seen from above; and the part of the
+  episode that is left. A frame has what the fingertips measure, what the encoders of the joints
+  measure (their zeros are off by half a degree, their steps are 0.3 degrees), and the targets; both
+  angles are scaled as in the action. With `touch="taxels"`, `n` is 32: the readings of the four
+  fingertips in units of 10 kPa. With `"forces"`, `n` is 4: the normal force on each fingertip in
+  units of 3 N, as a contact sensor of MuJoCo gives it. With `"none"`, `n` is 0.
+- Reward: by how many radians the angle came closer to the wanted one, and 0.05 in each step that
+  ends less than 5 degrees from it.
+- Terminated with a reward of -2 if the object falls: its middle beyond the edge of the palm, or
+  tilted by more than 40 degrees.
+- Info: `error_rad` (wanted minus turned angle, without sign), `turned_rad`, `wanted_rad`,
+  `is_dropped`, `is_box`.
 """
 
 from twintac.gymnasium._spaces import KINDS, require_gymnasium

@@ -9,8 +9,8 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from twintac import FastGel, Imperfection, Tasks
-from twintac.gymnasium._spaces import FRAMES_PER_S, Single, spaces
+from twintac import FastGel, Imperfection
+from twintac.gymnasium._spaces import FRAMES_PER_S, Single, make_tasks, spaces
 
 
 class TouchEnv(gym.Env[Single, Single]):
@@ -18,11 +18,13 @@ class TouchEnv(gym.Env[Single, Single]):
     environment.
 
     Args:
-        kind: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. `twintac.gymnasium` describes their
-            observations, actions and rewards.
+        kind: `"ExploreShape"`, `"HoldForce"`, `"FollowEdge"` or `"InHandTurn"`. `twintac.gymnasium`
+            describes their observations, actions and rewards.
         imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
             working sensor unless given.
-        gel: the surrogate of the gel; PhysTac's unless given.
+        gel: the surrogate of the gel; that of the task's sensor unless given.
+        touch: for InHandTurn: what a fingertip measures, `"taxels"`, the reading of each taxel,
+            `"forces"`, one normal force, or `"none"`.
         render_mode: `"rgb_array"`, or none.
 
     Raises:
@@ -40,9 +42,10 @@ class TouchEnv(gym.Env[Single, Single]):
         *,
         imperfection: Imperfection | None = None,
         gel: FastGel | None = None,
+        touch: str | None = None,
         render_mode: str | None = None,
     ) -> None:
-        self._tasks = Tasks(kind, 1, gel=gel, imperfection=imperfection, autoreset="Disabled", n_threads=1)
+        self._tasks = make_tasks(kind, 1, gel=gel, imperfection=imperfection, touch=touch, autoreset="Disabled", n_threads=1)
         self._figures = self._tasks.figures
         self.observation_space, self.action_space = spaces(self._tasks)
         self.metadata = {**self.metadata, "render_fps": FRAMES_PER_S[kind]}

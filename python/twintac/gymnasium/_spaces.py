@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -11,12 +11,13 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     import gymnasium as gym
 
-    from twintac import Tasks
+    from twintac import FastGel, Imperfection, Tasks
+    from twintac.gymnasium._in_hand import InHandTurn
 
-KINDS = ("ExploreShape", "HoldForce", "FollowEdge")
+KINDS = ("ExploreShape", "HoldForce", "FollowEdge", "InHandTurn")
 """Names of the tasks."""
 
-FRAMES_PER_S = {"ExploreShape": 2, "HoldForce": 55, "FollowEdge": 55}
+FRAMES_PER_S = {"ExploreShape": 2, "HoldForce": 55, "FollowEdge": 55, "InHandTurn": 12.5}
 """Steps of each task in a second."""
 
 Single: TypeAlias = npt.NDArray[np.float32]
@@ -29,7 +30,31 @@ def require_gymnasium() -> None:
         raise ImportError("twintac.gymnasium needs the package gymnasium: pip install gymnasium")
 
 
-def spaces(tasks: Tasks) -> tuple[gym.Space[Single], gym.Space[Single]]:
+def make_tasks(
+    kind: str,
+    n_environments: int,
+    *,
+    gel: FastGel | None = None,
+    imperfection: Imperfection | None = None,
+    touch: str | None = None,
+    autoreset: Literal["NextStep", "SameStep", "Disabled"] = "NextStep",
+    n_threads: int | None = None,
+) -> Tasks | InHandTurn:
+    """The environments of a task. `touch` is for InHandTurn only."""
+    from twintac import Error, Tasks
+
+    if kind == "InHandTurn":
+        from twintac.gymnasium._in_hand import InHandTurn
+
+        return InHandTurn(
+            n_environments, gel=gel, imperfection=imperfection, touch=touch or "taxels", autoreset=autoreset, n_threads=n_threads
+        )
+    if touch is not None:
+        raise Error(f"`touch` is for InHandTurn, not for {kind}")
+    return Tasks(kind, n_environments, gel=gel, imperfection=imperfection, autoreset=autoreset, n_threads=n_threads)
+
+
+def spaces(tasks: Tasks | InHandTurn) -> tuple[gym.Space[Single], gym.Space[Single]]:
     """The spaces of observations and actions of one environment."""
     from gymnasium.spaces import Box
 

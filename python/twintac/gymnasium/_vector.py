@@ -12,8 +12,8 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from twintac import FastGel, Imperfection, Tasks
-from twintac.gymnasium._spaces import FRAMES_PER_S, Single, spaces
+from twintac import FastGel, Imperfection
+from twintac.gymnasium._spaces import FRAMES_PER_S, Single, make_tasks, spaces
 
 _Bool = npt.NDArray[np.bool_]
 
@@ -23,12 +23,14 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
     single environment with the seed `seed + i`; it does not depend on the other environments.
 
     Args:
-        kind: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. `twintac.gymnasium` describes their
-            observations, actions and rewards.
+        kind: `"ExploreShape"`, `"HoldForce"`, `"FollowEdge"` or `"InHandTurn"`. `twintac.gymnasium`
+            describes their observations, actions and rewards.
         num_envs: number of environments.
         imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
             working sensor unless given.
-        gel: the surrogate of the gel; PhysTac's unless given.
+        gel: the surrogate of the gel; that of the task's sensor unless given.
+        touch: for InHandTurn: what a fingertip measures, `"taxels"`, the reading of each taxel,
+            `"forces"`, one normal force, or `"none"`.
         autoreset_mode: when an environment whose episode is over begins the next one: in the next
             step, in the same step, or when `reset` is called.
         n_threads: number of threads; as many as there are cores unless given. Results do not depend
@@ -55,16 +57,18 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         *,
         imperfection: Imperfection | None = None,
         gel: FastGel | None = None,
+        touch: str | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         n_threads: int | None = None,
         render_mode: str | None = None,
     ) -> None:
         mode = AutoresetMode(autoreset_mode)
-        self._tasks = Tasks(
+        self._tasks = make_tasks(
             kind,
             num_envs,
             gel=gel,
             imperfection=imperfection,
+            touch=touch,
             autoreset=mode.value,
             n_threads=n_threads,
         )

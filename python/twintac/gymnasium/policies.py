@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twintac import Body, FastGel, Shape, Tasks
-from twintac.gymnasium._spaces import Single
+from twintac.gymnasium._spaces import Single, make_tasks
 
 Policy: TypeAlias = Callable[[Single], Single]
 """A function from observations, `[n, n_observed]`, to actions, `[n, n_actions]`."""
@@ -20,6 +20,8 @@ Policy: TypeAlias = Callable[[Single], Single]
 _Double: TypeAlias = npt.NDArray[np.float64]
 _Integers: TypeAlias = npt.NDArray[np.int64]
 
+# The scripted baseline of InHandTurn: see there.
+_SWING_BACK, _SWING_AT_0, _SWING_SLOPE = 0.12, 0.41, 1.08
 _N_TAXELS = 8
 _HEIGHT_MM = 8.5
 
@@ -34,7 +36,7 @@ def random_policy(kind: str, seed: int = 0) -> Policy:
     Returns:
         The policy.
     """
-    n_actions = Tasks(kind, 1).n_actions
+    n_actions = make_tasks(kind, 1).n_actions
     random = np.random.default_rng(seed)
 
     def act(observed: Single) -> Single:
@@ -44,9 +46,10 @@ def random_policy(kind: str, seed: int = 0) -> Policy:
 
 
 def scripted_policy(kind: str, seed: int = 0) -> Policy:
-    """The scripted baseline of a task, for PhysTac. Making it takes some seconds. The baseline of
-    HoldForce is calibrated on the task's shapes and that of FollowEdge on the task's discs, both
-    with perfect sensors; that of ExploreShape with sensor variation.
+    """The scripted baseline of a task, for the task's own sensor. Making it takes some seconds. The
+    baseline of HoldForce is calibrated on the task's shapes and that of FollowEdge on the task's
+    discs, both with perfect sensors; that of ExploreShape with sensor variation. That of InHandTurn
+    uses the angles of the joints, and no reading.
 
     Args:
         kind: the task.
@@ -55,7 +58,7 @@ def scripted_policy(kind: str, seed: int = 0) -> Policy:
     Returns:
         The policy.
     """
-    scripts = {"HoldForce": _hold_force, "FollowEdge": _follow_edge, "ExploreShape": _explore_shape}
+    scripts = {"HoldForce": _hold_force, "FollowEdge": _follow_edge, "ExploreShape": _explore_shape, "InHandTurn": _in_hand_turn}
     return scripts[kind](np.random.default_rng(seed))
 
 
@@ -194,5 +197,36 @@ def _explore_shape(random: np.random.Generator) -> Policy:
 
     def act(observed: Single) -> Single:
         return np.clip(np.concatenate([presses(observed), scores(observed)], axis=1), -1.0, 1.0).astype(np.float32)
+
+    return act
+
+
+def _in_hand_turn(random: np.random.Generator) -> Policy:
+    """The scripted baseline of InHandTurn. The fingers swing back, close, and swing forward together.
+    The swing is determined by the wanted angle and by the angles of the closed fingers, which show
+    how wide the object is. So it is right for cylinders; how a box lay stays unknown.
+    """
+    from twintac.gymnasium._hand import CLOSE_RAD, SWING_RAD
+    from twintac.gymnasium._in_hand import N_HISTORY, N_JOINTS, N_STEPS, WANTED_RAD
+
+    def scaled(rad: _Double, ends: tuple[float, float]) -> _Double:
+        return (2.0 * rad - ends[0] - ends[1]) / (ends[1] - ends[0])
+
+    closes, turns, stops = 5, 14, 40  # steps
+
+    def act(observed: Single) -> Single:
+        step = np.round((1.0 - observed[:, -1]) * N_STEPS)
+        n_frame = (observed.shape[1] - 2) // N_HISTORY
+        close = observed[:, n_frame - 2 * N_JOINTS : n_frame - N_JOINTS][:, 1::2].mean(axis=1)
+        close_rad = 0.5 * (close * (CLOSE_RAD[1] - CLOSE_RAD[0]) + CLOSE_RAD[0] + CLOSE_RAD[1])
+        wanted_rad = -observed[:, -2] * WANTED_RAD[1]  # as the fingers swing
+        # Fitted to cylinders that were turned: the swing for each radian that the object turns.
+        way_rad = wanted_rad * (_SWING_AT_0 - _SWING_SLOPE * np.sin(close_rad))
+        part = np.clip((step - turns) / (stops - turns), 0.0, 1.0)
+        grip_rad = np.where(step < closes, 0.0, np.where(step < turns, 0.06 + 0.03 * (step - closes), 0.35))
+        actions = np.empty((len(observed), N_JOINTS))
+        actions[:, 0::2] = scaled(part * way_rad - _SWING_BACK * wanted_rad, SWING_RAD)[:, None]
+        actions[:, 1::2] = scaled(grip_rad, CLOSE_RAD)[:, None]
+        return np.clip(actions, -1.0, 1.0).astype(np.float32)
 
     return act

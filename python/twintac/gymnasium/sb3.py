@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from stable_baselines3.common.vec_env import VecEnv  # type: ignore[import-not-found, unused-ignore]
 
-from twintac import FastGel, Imperfection, Tasks
-from twintac.gymnasium._spaces import Single, spaces
+from twintac import FastGel, Imperfection
+from twintac.gymnasium._spaces import Single, make_tasks, spaces
 
 
 class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
@@ -26,6 +26,7 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         num_envs: number of environments.
         imperfection: as in `TouchVectorEnv`.
         gel: as in `TouchVectorEnv`.
+        touch: as in `TouchVectorEnv`.
         n_threads: as in `TouchVectorEnv`.
         seed: environment `i` has the seed `seed + i`.
     """
@@ -37,11 +38,12 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         *,
         imperfection: Imperfection | None = None,
         gel: FastGel | None = None,
+        touch: str | None = None,
         n_threads: int | None = None,
         seed: int = 0,
     ) -> None:
-        self.tasks = Tasks(
-            kind, num_envs, gel=gel, imperfection=imperfection, autoreset="SameStep", n_threads=n_threads
+        self.tasks = make_tasks(
+            kind, num_envs, gel=gel, imperfection=imperfection, touch=touch, autoreset="SameStep", n_threads=n_threads
         )
         self.tasks.seed([seed + number for number in range(num_envs)])
         self.render_mode = None

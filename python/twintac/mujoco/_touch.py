@@ -288,6 +288,19 @@ class TouchSensors:
             self._rest(number)
             self._clock.last_s[number] = np.nan
 
+    def replace(self, world: int, number: int) -> None:
+        """Replaces the sensors of one world by others at rest, whose deviations are drawn anew from
+        the sensor variation, as for a new episode.
+
+        Args:
+            world: index of the world, from 0.
+            number: identifies the new sensors. Those of `n_worlds` worlds that were just made have
+                the numbers 0 to `n_worlds - 1`.
+        """
+        self.reset(world)
+        for place, sensor in enumerate(self._sensors_of(self._numbers(world)[0])):
+            self._batch.replace(sensor, number * len(self._site) + place)
+
     def state(self, world: int | None = None) -> TouchState:
         """The current state of the sensors, to be stored with the state of the data. If both are
         restored, the same steps give the same bits.
