@@ -1,7 +1,7 @@
 """Measures how many environment steps are made in a second: writes docs/benchmarks/tasks.json and
 tasks.md.
 
-pip install './python[rl]' mujoco
+pip install './python[rl]' 'mujoco>=4'
 python python/benchmarks/tasks.py
 """
 
@@ -23,11 +23,12 @@ from twintac.gymnasium.policies import Policy, random_policy, scripted_policy
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "python python/benchmarks/tasks.py"
-KINDS = ("HoldForce", "FollowEdge", "ExploreShape")
+KINDS = ("HoldForce", "FollowEdge", "ExploreShape", "InHandTurn")
 N_ENVIRONMENTS = 1024
+N_HANDS = 64  # environments of InHandTurn, whose bodies MuJoCo moves
 N_THREADS = 2
 N_WARM_UP, N_STEPS = 60, 300
-N_SINGLE = 3000
+N_SINGLE, N_SINGLE_HAND = 3000, 300
 FEELS_KPA = 0.1
 
 
@@ -70,9 +71,8 @@ def together() -> dict[str, dict[str, Any]]:
     timed = {}
     for kind in KINDS:
         for name, imperfection in ((kind, None), (f"{kind}, perfect sensors", twintac.Imperfection())):
-            env = gym.make_vec(
-                f"TwinTac/{kind}-v0", num_envs=N_ENVIRONMENTS, imperfection=imperfection, n_threads=N_THREADS
-            )
+            n = N_HANDS if kind == "InHandTurn" else N_ENVIRONMENTS
+            env = gym.make_vec(f"TwinTac/{kind}-v0", num_envs=n, imperfection=imperfection, n_threads=N_THREADS)
             timed[name] = Timed(env, policy_of(kind))
     cart = gym.make_vec("CartPole-v1", num_envs=N_ENVIRONMENTS)
     timed["CartPole-v1"] = Timed(cart, lambda _: np.zeros(N_ENVIRONMENTS, np.int64))
@@ -93,7 +93,7 @@ def alone(kind: str) -> dict[str, float]:
     act = policy_of(kind)
     observed, _ = env.reset(seed=1)
     rates = []
-    for _ in range(N_SINGLE):
+    for _ in range(N_SINGLE_HAND if kind == "InHandTurn" else N_SINGLE):
         action = act(observed[None])[0]
         started = time.perf_counter()
         observed, _, terminated, truncated, _ = env.step(action)
@@ -135,14 +135,14 @@ def page(results: dict[str, Any]) -> str:
             f"Made by `{COMMAND}` on {machine['processor']}, {machine['processors']} processors (simulated data). Load average at the end: {machine['load_average']:.1f} (what is above "
             f"{N_THREADS} was other work, and made all rates lower).",
             "",
-            f"{N_ENVIRONMENTS} environments are stepped in one call on {N_THREADS} threads from Python, and begin anew by themselves. Robots follow the script of their task, those of ExploreShape move by chance. All "
+            f"{N_ENVIRONMENTS} environments ({N_HANDS} of InHandTurn) are stepped in one call on {N_THREADS} threads from Python, and begin anew by themselves. Robots follow the script of their task, those of ExploreShape move by chance. All "
             f"take turns in one run; of {N_STEPS} calls each, the median counts, and 80 % lie within the range. *Touched* is the part of sensors that had read more than {FEELS_KPA} kPa, of ExploreShape in the episode's first press; an episode's first observation has no reading.",
             "",
             "| environment | steps a second | range | touched |",
             "|---|---:|---:|---:|",
             *rows,
             "",
-            "A step of ExploreShape is a whole press of two frames. CartPole-v1 is Gymnasium's own vector environment, a simple one without touch. MuJoCo's step also moves bodies; its sensor sums contact forces in cells, without a gel.",
+            "A step of ExploreShape is a whole press of two frames; one of InHandTurn is 40 steps of MuJoCo with four sensors. CartPole-v1 is Gymnasium's own vector environment, a simple one without touch. MuJoCo's step also moves bodies; its sensor sums contact forces in cells, without a gel.",
             *([grid["note"]] if "note" in grid else []),
             "",
             "One environment by itself, `gym.make`:",
@@ -165,6 +165,7 @@ def main() -> None:
         "command": COMMAND,
         "provenance": "simulated",
         "environments": N_ENVIRONMENTS,
+        "hands": N_HANDS,
         "threads": N_THREADS,
         "together": together(),
         "alone": {kind: alone(kind) for kind in KINDS},

@@ -243,7 +243,8 @@ class InHandTurn:
     def _observe(self) -> _Single:
         wanted, left = self._wanted_rad / WANTED_RAD[1], 1.0 - self._steps / N_STEPS
         observed = np.concatenate([self._history.reshape(self._n, -1), wanted[:, None], left[:, None]], axis=1)
-        return np.asarray(np.clip(observed, -10.0, 10.0), np.float32)
+        # An unstable world has numbers that are not finite; its episode ends.
+        return np.nan_to_num(np.clip(observed, -10.0, 10.0)).astype(np.float32)
 
     def _figures(self) -> _Single:
         is_box = [thing is not None and thing.is_box for thing in self._things]
