@@ -1,6 +1,7 @@
 """Tests of InHandTurn: a hand that turns an object by touch."""
 
 import importlib.util
+import sys
 from typing import Any
 
 import gymnasium as gym
@@ -151,3 +152,10 @@ def test_stable_baselines_gets_the_same_environments() -> None:
     assert env.reset().shape == (3, 82)
     observed, rewards, ended, infos = env.step(np.zeros((3, 8), np.float32))
     assert observed.shape == (3, 82) and rewards.shape == ended.shape == (3,) and len(infos) == 3
+
+
+def test_without_mujoco_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "twintac.gymnasium._in_hand")
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(ImportError, match="InHandTurn needs MuJoCo 4 or later"):
+        gym.make("TwinTac/InHandTurn-v0")

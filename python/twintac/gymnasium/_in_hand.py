@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Sequence
 from operator import index
 from typing import Any, SupportsIndex, TypeAlias
@@ -9,11 +10,11 @@ from typing import Any, SupportsIndex, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-try:
-    import mujoco
-    import mujoco.batch
-except ModuleNotFoundError as error:
-    raise ImportError("InHandTurn needs MuJoCo 4 or later, with Python 3.11 or later: pip install 'mujoco>=4'") from error
+if importlib.util.find_spec("mujoco") is None or importlib.util.find_spec("mujoco.batch") is None:
+    raise ImportError("InHandTurn needs MuJoCo 4 or later, with Python 3.11 or later: pip install 'mujoco>=4'")
+
+import mujoco
+import mujoco.batch
 
 from twintac import Error, FastGel, Imperfection, Sensor
 from twintac.gymnasium._hand import CLOSE_RAD, N_FINGERS, PALM_RADIUS_M, SWING_RAD, TIMESTEP_S, TIPS, Thing, draw_thing, hand
