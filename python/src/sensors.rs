@@ -92,8 +92,8 @@ impl Imperfection {
         })
     }
 
-    /// The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`. Gains,
-    /// noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
+    /// The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`.
+    /// Gains, noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
     /// hysteresis, installation and faults are assumed.
     #[staticmethod]
     fn usual() -> Self {

@@ -1368,8 +1368,8 @@ class Imperfection:
         """
     @staticmethod
     def usual() -> Imperfection:
-        """The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`. Gains,
-        noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
+        """The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`.
+        Gains, noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
         hysteresis, installation and faults are assumed.
         """
     def fields(self) -> dict[str, float]:
