@@ -15,6 +15,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 import torch  # type: ignore[import-not-found, unused-ignore]
@@ -22,7 +23,7 @@ from stable_baselines3 import PPO  # type: ignore[import-not-found, unused-ignor
 from stable_baselines3.common.callbacks import BaseCallback  # type: ignore[import-not-found, unused-ignore]
 from stable_baselines3.common.vec_env import VecNormalize  # type: ignore[import-not-found, unused-ignore]
 
-from twintac.gymnasium._spaces import make_tasks
+import twintac.gymnasium  # registers the tasks
 from twintac.gymnasium.policies import Policy, random_policy, scripted_policy
 from twintac.gymnasium.sb3 import TouchVecEnv
 
@@ -48,22 +49,21 @@ def play(policy: Policy, touch: str, seed: int, n: int) -> dict[str, npt.NDArray
     """Plays one episode in each of `n` worlds, and returns the returns, the errors of the angle at
     the end, whether the object fell, and whether it is a box.
     """
-    tasks = make_tasks(KIND, n, touch=touch, autoreset="Disabled")
-    tasks.seed([seed + number for number in range(n)])
-    observed, figures = tasks.reset()
+    env = gym.make_vec(f"TwinTac/{KIND}-v0", num_envs=n, touch=touch, autoreset_mode="Disabled")
+    observed, infos = env.reset(seed=seed)
+    last = {name: infos[name].copy() for name in ("error_rad", "is_dropped", "is_box")}
     returns, is_going = np.zeros(n), np.ones(n, np.bool_)
-    last = figures.copy()
     while is_going.any():
-        observed, rewards, terminated, truncated, figures, _ = tasks.step(policy(observed))
+        observed, rewards, terminated, truncated, infos = env.step(policy(observed))
         returns += rewards * is_going
-        last[is_going] = figures[is_going]
+        for name, values in last.items():
+            values[is_going] = infos[name][is_going]
         is_going &= ~(terminated | truncated)
-    column = dict(zip(tasks.figures, last.T))
     return {
         "return": returns,
-        "error_deg": np.degrees(column["error_rad"]),
-        "is_dropped": column["is_dropped"] > 0.0,
-        "is_box": column["is_box"] > 0.0,
+        "error_deg": np.degrees(last["error_rad"]),
+        "is_dropped": last["is_dropped"] > 0.0,
+        "is_box": last["is_box"] > 0.0,
     }
 
 
@@ -207,14 +207,13 @@ def film(folder: Path, out: Path, seed: int) -> None:
     """Films episodes as an animated GIF."""
     from PIL import Image
 
-    touch, policy, n = folder.name.rsplit("-", 1)[0], trained(folder), 2
-    tasks = make_tasks(KIND, n, touch=touch, autoreset="Disabled")
-    tasks.seed([seed + number for number in range(n)])
-    observed, _ = tasks.reset()
+    touch, policy = folder.name.rsplit("-", 1)[0], trained(folder)
+    env = gym.make_vec(f"TwinTac/{KIND}-v0", num_envs=2, touch=touch, autoreset_mode="Disabled", render_mode="rgb_array")
+    observed, _ = env.reset(seed=seed)
     frames = []
     for _ in range(N_STEPS):
-        observed, *_ = tasks.step(policy(observed))
-        frames.append(Image.fromarray(np.concatenate([tasks.picture(number) for number in range(n)], axis=1)).quantize(64))
+        observed, *_ = env.step(policy(observed))
+        frames.append(Image.fromarray(np.concatenate(env.render() or (), axis=1)).quantize(64))
     frames[0].save(out, save_all=True, append_images=frames[1:], duration=80, loop=0, optimize=True)
 
 
