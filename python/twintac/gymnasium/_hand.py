@@ -94,7 +94,7 @@ def hand() -> mujoco.MjModel:
         <compiler angle="radian"/>
         <option timestep="{TIMESTEP_S}" integrator="implicitfast"/>
         <visual><headlight ambient="0.45 0.45 0.45"/></visual>
-        <asset><texture type="skybox" builtin="flat" rgb1="1 1 1" width="32" height="192"/></asset>
+        <asset><texture type="skybox" builtin="flat" rgb1="1 1 1" rgb2="1 1 1" width="32" height="192"/></asset>
         <worldbody>
           <light pos="-0.1 -0.3 0.5" dir="0.2 0.6 -1" diffuse="0.6 0.6 0.6"/>
           <geom type="cylinder" pos="0 0 -0.062" size="0.068 0.004" contype="0" conaffinity="0" rgba="0.3 0.3 0.35 1"/>
@@ -104,7 +104,7 @@ def hand() -> mujoco.MjModel:
           {fingers}
           <body name="object" pos="0 0 0.02"><freejoint name="object"/>
             <geom name="object" type="cylinder" size="0.016 0.02" mass="0.06" contype="1" conaffinity="3" friction="0.3 0.001 0.0001" rgba="0.9 0.6 0.3 1"/>
-            <geom name="pointer" type="box" pos="0.006 0 0.02" size="0.006 0.0012 0.0008" mass="0" contype="0" conaffinity="0" rgba="0.2 0.2 0.2 1"/>
+            <geom name="pointer" type="box" pos="0.006 0 0.02" size="0.006 0.0012 0.0008" mass="0" contype="0" conaffinity="0" rgba="0.1 0.5 0.2 1"/>
           </body>
         </worldbody>
         <actuator>{servos}</actuator>
