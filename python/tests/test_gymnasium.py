@@ -133,3 +133,13 @@ def test_stable_baselines_finds_nothing_wrong_and_learns() -> None:
     model = PPO("MlpPolicy", env, n_steps=10, batch_size=20, n_epochs=1, device="cpu", seed=1)
     model.learn(80)
     assert model.num_timesteps >= 80
+
+
+def test_the_usual_variation_is_that_of_the_tasks() -> None:
+    def first(imperfection: twintac.Imperfection | None) -> Any:
+        tasks = twintac.Tasks("ExploreShape", 20, imperfection=imperfection)
+        tasks.reset()
+        return tasks.step(np.zeros((20, 8), np.float32))[0]
+
+    assert np.array_equal(first(twintac.Imperfection.usual()), first(None))
+    assert not np.array_equal(first(twintac.Imperfection()), first(None))

@@ -1,7 +1,7 @@
 """Trains a hand to turn an object on its palm by touch, and compares it with hands that feel less.
 
     python in_hand.py train --touch taxels [--seed 1] [--steps 2000000] [--out runs/in-hand]
-    python in_hand.py test [--runs runs/in-hand] [--out docs/results/in-hand]
+    python in_hand.py test [--runs runs/in-hand] [--out runs/in-hand]
     python in_hand.py film --run runs/in-hand/taxels-1 --out turn.gif
 
 Needs stable-baselines3; the film needs OpenGL, as `MUJOCO_GL` names it. `train` takes about three

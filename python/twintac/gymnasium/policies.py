@@ -20,8 +20,6 @@ Policy: TypeAlias = Callable[[Single], Single]
 _Double: TypeAlias = npt.NDArray[np.float64]
 _Integers: TypeAlias = npt.NDArray[np.int64]
 
-# The scripted baseline of InHandTurn: see there.
-_SWING_BACK, _SWING_AT_0, _SWING_SLOPE = 0.12, 0.41, 1.08
 _N_TAXELS = 8
 _HEIGHT_MM = 8.5
 
@@ -213,6 +211,9 @@ def _in_hand_turn(random: np.random.Generator) -> Policy:
         return (2.0 * rad - ends[0] - ends[1]) / (ends[1] - ends[0])
 
     closes, turns, stops = 5, 14, 40  # steps
+    # Fitted to 96 cylinders that this baseline turned: the swing for each radian that the object
+    # turns is `at_0 - slope sin(close)`. The fingers swing back by `back` before they close.
+    back, at_0, slope = 0.12, 0.41, 1.08
 
     def act(observed: Single) -> Single:
         step = np.round((1.0 - observed[:, -1]) * N_STEPS)
@@ -220,12 +221,11 @@ def _in_hand_turn(random: np.random.Generator) -> Policy:
         close = observed[:, n_frame - 2 * N_JOINTS : n_frame - N_JOINTS][:, 1::2].mean(axis=1)
         close_rad = 0.5 * (close * (CLOSE_RAD[1] - CLOSE_RAD[0]) + CLOSE_RAD[0] + CLOSE_RAD[1])
         wanted_rad = -observed[:, -2] * WANTED_RAD[1]  # as the fingers swing
-        # Fitted to cylinders that were turned: the swing for each radian that the object turns.
-        way_rad = wanted_rad * (_SWING_AT_0 - _SWING_SLOPE * np.sin(close_rad))
+        way_rad = wanted_rad * (at_0 - slope * np.sin(close_rad))
         part = np.clip((step - turns) / (stops - turns), 0.0, 1.0)
         grip_rad = np.where(step < closes, 0.0, np.where(step < turns, 0.06 + 0.03 * (step - closes), 0.35))
         actions = np.empty((len(observed), N_JOINTS))
-        actions[:, 0::2] = scaled(part * way_rad - _SWING_BACK * wanted_rad, SWING_RAD)[:, None]
+        actions[:, 0::2] = scaled(part * way_rad - back * wanted_rad, SWING_RAD)[:, None]
         actions[:, 1::2] = scaled(grip_rad, CLOSE_RAD)[:, None]
         return np.clip(actions, -1.0, 1.0).astype(np.float32)
 

@@ -296,6 +296,9 @@ class TouchSensors:
             world: index of the world, from 0.
             number: identifies the new sensors. Those of `n_worlds` worlds that were just made have
                 the numbers 0 to `n_worlds - 1`.
+
+        Raises:
+            ValueError: for a world that does not exist.
         """
         self.reset(world)
         for place, sensor in enumerate(self._sensors_of(self._numbers(world)[0])):
