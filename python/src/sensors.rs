@@ -54,6 +54,8 @@ const TABLE: &str = "imperfection";
 ///   sum is at most 1.
 /// - `rate_hz`, `jitter`: frames that the bus delivers in a second, Hz (0: one at each step), and
 ///   the deviation of the time between frames, as a fraction of it.
+/// - `modulus_deviation`: deviation of the logarithm of the gel's modulus from that of the
+///   surrogate's gel. Forces and pressures at given poses are proportional to it.
 /// - `height_deviation_mm`, `place_deviation_mm`, `turn_deviation_rad`, `tilt_deviation_rad`:
 ///   deviations of the installation of the sensor: height, position, rotation about the vertical
 ///   axis, and tilt, mm and radians.

@@ -184,6 +184,17 @@ def test_installed_elsewhere_a_sensor_reads_what_is_there() -> None:
         assert np.allclose(np.asarray(back)[sensor, 0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], atol=1e-5)
 
 
+def test_a_stiffer_gel_has_larger_pressures_and_forces_by_the_same_factor() -> None:
+    spread = arrays.spread(Imperfection(modulus_deviation=0.4))
+    drawn = arrays.draw(spread, arrays.keys(1, 2000), N_TAXELS)
+    modulus = np.asarray(drawn.modulus)
+    assert modulus.shape == (2000,) and np.std(np.log(modulus)) == pytest.approx(0.4, rel=0.05)
+    assert abs(np.mean(np.log(modulus))) < 0.03
+    for values in (np.ones((2000, N_TAXELS)), np.ones((2000, 3, 6))):
+        stiff = np.asarray(arrays.stiffened(drawn, values))
+        assert stiff.shape == values.shape and np.all(stiff[7] == modulus[7])
+
+
 def without_its_perceptron(model: Path, folder: Path) -> Path:
     """The same model, of the variant without a perceptron."""
     record = json.loads((model / "twin.json").read_text(encoding="utf-8"))

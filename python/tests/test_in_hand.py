@@ -1,6 +1,7 @@
 """Tests of InHandTurn: a hand that turns an object by touch."""
 
 import importlib.util
+import re
 import sys
 from typing import Any
 
@@ -16,9 +17,9 @@ import mujoco
 
 import twintac.gymnasium  # registers the tasks
 from twintac import Error, FastGel, Imperfection
-from twintac.gymnasium._hand import Thing, draw_thing, hand
+from twintac.gymnasium._hand import PALM_RADIUS_M, Thing, draw_thing, hand
 from twintac.gymnasium._in_hand import N_STEPS, InHandTurn
-from twintac.gymnasium.policies import random_policy, scripted_policy
+from twintac.gymnasium.policies import scripted_policy, seeing_policy
 
 FIRST_SEED = 10**9
 
@@ -35,10 +36,10 @@ def played(tasks: InHandTurn, seed: int, n_steps: int = N_STEPS) -> tuple[npt.ND
     return figures, dropped
 
 
-@pytest.mark.parametrize("touch", ["taxels", "forces", "none"])
+@pytest.mark.parametrize("touch", ["taxels", "forces", "none", "truth", "truth+forces"])
 def test_gymnasium_finds_nothing_wrong(touch: str) -> None:
     env = gym.make("TwinTac/InHandTurn-v0", touch=touch)
-    n_measured = {"taxels": 32, "forces": 4, "none": 0}[touch]
+    n_measured = {"taxels": 32, "forces": 4, "none": 0, "truth": 5, "truth+forces": 9}[touch]
     assert env.observation_space.shape == (4 * (n_measured + 16) + 2,) and env.action_space.shape == (8,)
     check_env(env.unwrapped, skip_render_check=True)
 
@@ -88,26 +89,53 @@ def test_an_open_hand_measures_nothing_and_a_closed_one_its_grip() -> None:
     assert np.all(newest[1].reshape(4, 8).max(axis=1) > 0.2)
 
 
-def test_a_step_moves_a_target_by_less_than_half_of_its_range() -> None:
+def test_an_action_of_one_moves_a_target_by_a_tenth_of_its_range() -> None:
     tasks = InHandTurn(1, autoreset="Disabled")
     tasks.reset()
-    observed, *_ = tasks.step(np.ones((1, 8)))
-    targets = observed[0, 32 + 8 : 32 + 16]
-    middle_rad = 0.125  # of `close`, which begins at 0
-    assert np.allclose(targets[0::2], 0.8) and np.allclose(targets[1::2], -middle_rad / 0.225 + 0.8, atol=1e-6)
+    for step in range(1, 12):
+        observed, *_ = tasks.step(np.ones((1, 8)))
+        targets = observed[0, 32 + 8 : 32 + 16]
+        middle_rad = 0.125  # of `close`, which begins at 0
+        assert np.allclose(targets[0::2], min(0.2 * step, 1.0), atol=1e-6)
+        assert np.allclose(targets[1::2], min(-middle_rad / 0.225 + 0.2 * step, 1.0), atol=1e-6)
+
+
+def test_the_truth_is_the_angle_that_is_left_and_how_the_object_lies() -> None:
+    tasks = InHandTurn(16, touch="truth+forces", autoreset="Disabled")
+    tasks.seed(range(16))
+    _, begun = tasks.reset()
+    observed, _, _, _, figures, _ = tasks.step(np.zeros((16, 8)))
+    truth = observed[:, :5]
+    assert np.allclose(truth[:, 0] * np.pi / 2.0, figures[:, 2] - figures[:, 1], atol=1e-5)
+    is_box = figures[:, 4] > 0
+    assert np.allclose(np.hypot(truth[:, 1], truth[:, 2]), is_box, atol=1e-5)
+    assert np.all(truth[:, 3:] > 12.0 / 26.0 - 1e-6) and np.all(truth[:, 3:] < 19.0 / 26.0 + 1e-6)
+    assert np.all(truth[~is_box, 3] == truth[~is_box, 4]) and np.array_equal(begun[:, 2], figures[:, 2])
+
+
+def test_who_sees_the_object_turns_most_of_them() -> None:
+    tasks = InHandTurn(32, touch="truth", autoreset="Disabled")
+    tasks.seed([FIRST_SEED + number for number in range(32)])
+    act = seeing_policy()
+    observed, _ = tasks.reset()
+    for _ in range(N_STEPS):
+        observed, _, _, _, figures, _ = tasks.step(act(observed))
+    assert np.mean((np.degrees(figures[:, 0]) < 5.0) & (figures[:, 3] == 0.0)) > 0.85
 
 
 def test_an_object_that_falls_ends_the_episode() -> None:
-    tasks = InHandTurn(4, autoreset="Disabled")
+    tasks = InHandTurn(3, autoreset="Disabled")
     tasks.reset()
-    act = random_policy("InHandTurn")
-    ended = np.zeros(4, np.bool_)
-    for _ in range(N_STEPS):
-        observed, rewards, terminated, truncated, figures, _ = tasks.step(act(np.zeros((4, tasks.n_observed), np.float32)))
-        assert np.all(rewards[terminated] == -2.0) and np.all(figures[terminated, 3] == 1.0)
-        assert np.all(rewards[ended] == 0.0)
-        ended |= terminated
-    assert ended.any() and not np.any(truncated & ended)
+    still = np.zeros((3, 8))
+    tasks.step(still)
+    position_m, quaternion = tasks._batch.bind("qpos")[:, -7:-4], tasks._batch.bind("qpos")[:, -4:]
+    position_m[0, 0] = PALM_RADIUS_M + 0.002
+    quaternion[1] = np.cos(np.radians(22.5)), np.sin(np.radians(22.5)), 0.0, 0.0  # tilted by 45 degrees
+    _, rewards, terminated, truncated, figures, _ = tasks.step(still)
+    assert terminated.tolist() == [True, True, False] and not truncated.any()
+    assert rewards[:2].tolist() == [-2.0, -2.0] and figures[:, 3].tolist() == [1.0, 1.0, 0.0]
+    _, rewards, terminated, truncated, _, _ = tasks.step(still)
+    assert rewards[:2].tolist() == [0.0, 0.0] and not terminated.any()
 
 
 @pytest.mark.parametrize("is_box", [True, False])
@@ -125,8 +153,9 @@ def test_an_object_is_as_mujoco_would_compile_it(is_box: bool) -> None:
 
 
 def test_wrong_input_is_an_error() -> None:
-    with pytest.raises(Error, match="`touch` is `smell`, expected one of taxels, forces, none"):
-        gym.make("TwinTac/InHandTurn-v0", touch="smell")
+    for touch in ("smell", "", "taxels+none", "taxels+taxels", "taxels, forces"):
+        with pytest.raises(Error, match=f"`touch` is `{re.escape(touch)}`, expected none, or some of truth, taxels, forces with \\+ between"):
+            gym.make("TwinTac/InHandTurn-v0", touch=touch)
     with pytest.raises(Error, match="`touch` is for InHandTurn, not for HoldForce"):
         gym.make("TwinTac/HoldForce-v0", touch="none")
     with pytest.raises(Error, match="`gel` is of `phystac`, the fingertips need one of `phystac-tip`"):
@@ -149,9 +178,9 @@ def test_stable_baselines_gets_the_same_environments() -> None:
     from twintac.gymnasium.sb3 import TouchVecEnv
 
     env = TouchVecEnv("InHandTurn", 3, touch="forces", seed=4)
-    assert env.reset().shape == (3, 82)
+    assert np.asarray(env.reset()).shape == (3, 82)
     observed, rewards, ended, infos = env.step(np.zeros((3, 8), np.float32))
-    assert observed.shape == (3, 82) and rewards.shape == ended.shape == (3,) and len(infos) == 3
+    assert np.asarray(observed).shape == (3, 82) and rewards.shape == ended.shape == (3,) and len(infos) == 3
 
 
 def test_without_mujoco_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,6 +41,7 @@ from ._variation import (
     draw,
     installed,
     spread,
+    stiffened,
 )
 
 __all__ = [
@@ -90,5 +91,6 @@ __all__ = [
     "spread",
     "stack",
     "step",
+    "stiffened",
     "twin",
 ]

@@ -18,8 +18,8 @@ _SHORTEST_FRAME = 0.1
 _TIME_S = 1e-6
 # Which random numbers are drawn for what: a normal number takes two. Those of taxels are further
 # apart than any sensor has taxels, those of pairs beyond them.
-_MOUNT, _TEMPERATURE, _JITTER, _FATE, _GAIN, _OFFSET, _DRIFT, _GROWTH, _NOISE, _COUPLING = (
-    0, 16, 32, 1 << 12, 2 << 12, 3 << 12, 4 << 12, 5 << 12, 6 << 12, 7 << 12,
+_MOUNT, _TEMPERATURE, _JITTER, _MODULUS, _FATE, _GAIN, _OFFSET, _DRIFT, _GROWTH, _NOISE, _COUPLING = (
+    0, 16, 32, 48, 1 << 12, 2 << 12, 3 << 12, 4 << 12, 5 << 12, 6 << 12, 7 << 12,
 )  # fmt: skip
 _MOST_TAXELS = 1 << 11
 # When a sensor is drawn; moments count from 0.
@@ -46,6 +46,7 @@ class Spread(NamedTuple):
     late_chance: Array
     rate_hz: Array
     jitter: Array
+    modulus_deviation: Array
     height_deviation_mm: Array
     place_deviation_mm: Array
     turn_deviation_rad: Array
@@ -67,6 +68,8 @@ class Drawn(NamedTuple):
     is_late: Array
     coupling: Array
     """Fraction of each taxel's pressure that each one reads in addition, `[..., reads, feels]`."""
+    modulus: Array
+    """Of the gel, relative to that of the surrogate's gel, `[...]`."""
     offset_mm: Array
     """Of that frame's origin in the gel's own frame, mm, `[..., 3]`."""
     rotation: Array
@@ -141,6 +144,7 @@ def draw(spread: Spread, key: Array, n_taxels: int) -> Drawn:
         is_stuck=(chance >= dead) & (chance < dead + stuck),
         is_late=(chance >= dead + stuck) & (chance < dead + stuck + late),
         coupling=xp.where(row[:, None] == row[None, :], 0.0, coupling),
+        modulus=xp.exp(spread.modulus_deviation * alone(_MODULUS)),
         offset_mm=xp.stack(offset_mm, axis=-1),
         rotation=_rotation(xp, axis_rad),
     )
@@ -157,6 +161,15 @@ def installed(drawn: Drawn, position_mm: Array, rotation: Array) -> tuple[Array,
     position_mm = drawn.offset_mm[..., None, :] + _turned(turn, position_mm)
     columns = [_turned(turn, rotation[..., :, axis]) for axis in range(3)]
     return position_mm, namespace("drawn", drawn.gain).stack(columns, axis=-1)
+
+
+def stiffened(drawn: Drawn, values: Array) -> Array:
+    """Pressures or wrenches of the gels as they are, from those that `read` and `step` return: at
+    given poses, both are proportional to the modulus. `values` has the dimensions of the sensors
+    first, `[..., n_taxels]` or `[..., n_bodies, 6]`."""
+    xp = namespace("drawn", drawn.gain)
+    more = (1,) * (values.ndim - drawn.modulus.ndim)
+    return values * xp.reshape(drawn.modulus, (*drawn.modulus.shape, *more))
 
 
 def as_described(drawn: Drawn, wrench: Array) -> Array:

@@ -62,15 +62,19 @@ right, without seeing it. The object is a cylinder or a box of unknown size (24 
 has two joints, `swing`, sideways, and `close`, towards the middle. A step is 80 ms; an episode has
 60 steps. The worlds are simulated by MuJoCo, which must be version 4 or later.
 
-- Action `[8]`: target of each joint's servo: of `swing` -0.4 to 0.4 radians, of `close` -0.1 to 0.35
-  radians; of each finger in turn. A target moves by at most 40 % of its range in a step.
+- Action `[8]`: motion of the target of each joint's servo, `swing` and `close` of each finger in
+  turn: 1 is 10 % of the target's range. The range of `swing` is -0.4 to 0.4 radians, that of `close`
+  -0.1 to 0.35 radians. An episode begins with all targets at 0.
 - Observation `[4 (n + 16) + 2]`: four frames, of this step and the three before, the newest first;
   the wanted angle, times 90 degrees, positive to the left as seen from above; and the part of the
-  episode that is left. A frame has what the fingertips measure, what the encoders of the joints
-  measure (their zeros are off by half a degree, their steps are 0.3 degrees), and the targets; both
-  angles are scaled as in the action. With `touch="taxels"`, `n` is 32: the readings of the four
-  fingertips in units of 10 kPa. With `"forces"`, `n` is 4: the normal force on each fingertip in
-  units of 3 N, as a contact sensor of MuJoCo gives it. With `"none"`, `n` is 0.
+  episode that is left. A frame has what `touch` measures, what the encoders of the joints measure
+  (their zeros are off by half a degree, their steps are 0.3 degrees), and the targets; both angles
+  are -1 to 1 over their ranges.
+- `touch="taxels"`: `n` is 32, the readings of the four fingertips in units of 10 kPa. `"forces"`:
+  `n` is 4, the normal force on each fingertip in units of 3 N, as a contact sensor of MuJoCo gives
+  it. `"none"`: `n` is 0. `"truth"`: `n` is 5, for a teacher: the angle that is left, times 90
+  degrees; cosine and sine of four times the angle of a box, 0 for a cylinder; half of the width
+  along both axes, in units of 26 mm. `"truth+taxels"`: both, in this order.
 - Reward: by how many radians the angle came closer to the wanted one, and 0.05 in each step that
   ends less than 5 degrees from it.
 - Terminated with a reward of -2 if the object falls: its middle beyond the edge of the palm, or

@@ -23,8 +23,9 @@ class TouchEnv(gym.Env[Single, Single]):
         imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
             working sensor unless given.
         gel: the surrogate of the gel; that of the task's sensor unless given.
-        touch: for InHandTurn: what a fingertip measures, `"taxels"`, the reading of each taxel,
-            `"forces"`, one normal force, or `"none"`.
+        touch: for InHandTurn: what is measured besides the joints, `"taxels"`, the reading of each
+            taxel, `"forces"`, one normal force for each fingertip, `"truth"`, what only the
+            simulation knows, several of these with `+` between them, or `"none"`.
         render_mode: `"rgb_array"`, or none.
 
     Raises:

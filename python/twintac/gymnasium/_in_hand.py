@@ -20,8 +20,10 @@ from twintac import Error, FastGel, Imperfection, Sensor
 from twintac.gymnasium._hand import CLOSE_RAD, N_FINGERS, PALM_RADIUS_M, SWING_RAD, TIMESTEP_S, TIPS, Thing, draw_thing, hand
 from twintac.mujoco import TouchSensors
 
-TOUCHES = ("taxels", "forces", "none")
-"""What a fingertip measures: the reading of each taxel, one normal force, or nothing."""
+MEASURED = ("truth", "taxels", "forces")
+"""What can be measured besides the joints: what only the simulation knows (the angle that is left,
+how the object lies, its size), the reading of each taxel, one normal force for each fingertip.
+"""
 
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Bool: TypeAlias = npt.NDArray[np.bool_]
@@ -33,8 +35,8 @@ N_HISTORY = 4  # frames in an observation
 _SUBSTEPS = round(STEP_S / TIMESTEP_S)
 _MOST = 10_000  # environments
 _FRICTION = 0.8
-# The fraction of a servo's range by which its target can move in a step.
-_FASTEST = 0.4
+FASTEST = 0.1
+"""The fraction of a servo's range by which its target moves in a step at an action of 1."""
 WANTED_RAD = np.radians((15.0, 90.0))
 _NEAR_RAD = np.radians(5.0)
 _OFF_M, _TILT_COS = PALM_RADIUS_M, np.cos(np.radians(40.0))
@@ -65,13 +67,14 @@ class InHandTurn:
         autoreset: str = "NextStep",
         n_threads: int | None = None,
     ) -> None:
-        if touch not in TOUCHES:
-            raise Error(f"`touch` is `{touch}`, expected one of {', '.join(TOUCHES)}")
+        self._measured = [] if touch == "none" else touch.split("+")
+        if len(set(self._measured) & set(MEASURED)) < len(self._measured):
+            raise Error(f"`touch` is `{touch}`, expected none, or some of {', '.join(MEASURED)} with + between")
         if gel is not None and gel.sensor != Sensor.phystac_tip().name:
             raise Error(f"`gel` is of `{gel.sensor}`, the fingertips need one of `{Sensor.phystac_tip().name}`")
         if not 1 <= n_environments <= _MOST:
             raise Error(f"`n_environments` is {n_environments}, expected 1 to {_MOST}")
-        self._n, self._touch_kind, self._autoreset = n_environments, touch, autoreset
+        self._n, self._autoreset = n_environments, autoreset
         self._model = hand()
         self._batch = mujoco.batch.Batch(self._model, self._n, nthread=n_threads or 0, persistent=True)
         self._batch.forward(stage=_VELOCITIES)
@@ -203,11 +206,10 @@ class InHandTurn:
         self._things[number] = thing
 
     def _move(self, actions: _Array, is_going: _Bool) -> None:
-        """Moves the targets of the servos evenly to those of the actions, in a step of the task."""
+        """Moves the targets of the servos evenly, as the actions say, in a step of the task."""
         batch, ctrl = self._batch, self._batch.bind("ctrl")
-        aim_rad = _MIDDLE_RAD + actions * _HALF_RAD
-        furthest_rad = 2.0 * _FASTEST * _HALF_RAD
-        way_rad = np.clip(aim_rad - self._target_rad, -furthest_rad, furthest_rad) * is_going[:, None]
+        aim_rad = np.clip(self._target_rad + 2.0 * FASTEST * _HALF_RAD * actions, _LOW, _HIGH)
+        way_rad = (aim_rad - self._target_rad) * is_going[:, None]
         for substep in range(1, _SUBSTEPS + 1):
             ctrl[:] = self._target_rad + substep / _SUBSTEPS * way_rad
             self._touch.update(batch)
@@ -230,16 +232,27 @@ class InHandTurn:
 
     def _frame(self) -> _Array:
         """What the fingertips and the encoders measure now, and the targets of the servos."""
-        if self._touch_kind == "taxels":
-            measured = self._touch.readings_kpa.reshape(self._n, -1) / _READING_KPA
-        elif self._touch_kind == "forces":
-            measured = -self._touch.wrench[:, :, 2] / _FORCE_N
-        else:
-            measured = np.zeros((self._n, 0), np.float32)
+        measured = {
+            "truth": self._truth,
+            "taxels": lambda: self._touch.readings_kpa.reshape(self._n, -1) / _READING_KPA,
+            "forces": lambda: -self._touch.wrench[:, :, 2] / _FORCE_N,
+        }
         joints_rad = self._batch.bind("qpos")[:, :N_JOINTS] + self._encoder_zero_rad
         joints_rad = np.round(joints_rad / _ENCODER_STEP_RAD) * _ENCODER_STEP_RAD
         angles = [(rad - _MIDDLE_RAD) / _HALF_RAD for rad in (joints_rad, self._target_rad)]
-        return np.concatenate([measured, *angles], axis=1)
+        return np.concatenate([*(measured[name]() for name in self._measured), *angles], axis=1)
+
+    def _truth(self) -> _Array:
+        """The angle that is left; how a box lies, the same after a quarter of a turn; and the size."""
+        left = (self._wanted_rad - self._turned_rad) / WANTED_RAD[1]
+        lies = np.zeros((self._n, 2))
+        half_m = np.zeros((self._n, 2))
+        for number, thing in enumerate(self._things):
+            if thing is not None:
+                half_m[number] = thing.around_m[:2]
+                if thing.is_box:
+                    lies[number] = np.cos(4.0 * self._yaw_rad[number]), np.sin(4.0 * self._yaw_rad[number])
+        return np.concatenate([left[:, None], lies, half_m / PALM_RADIUS_M], axis=1)
 
     def _observe(self) -> _Single:
         wanted, left = self._wanted_rad / WANTED_RAD[1], 1.0 - self._steps / N_STEPS

@@ -47,7 +47,7 @@ def make_tasks(
         from twintac.gymnasium._in_hand import InHandTurn
 
         return InHandTurn(
-            n_environments, gel=gel, imperfection=imperfection, touch=touch or "taxels", autoreset=autoreset, n_threads=n_threads
+            n_environments, gel=gel, imperfection=imperfection, touch="taxels" if touch is None else touch, autoreset=autoreset, n_threads=n_threads
         )
     if touch is not None:
         raise Error(f"`touch` is for InHandTurn, not for {kind}")

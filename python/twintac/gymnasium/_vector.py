@@ -29,8 +29,9 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
             working sensor unless given.
         gel: the surrogate of the gel; that of the task's sensor unless given.
-        touch: for InHandTurn: what a fingertip measures, `"taxels"`, the reading of each taxel,
-            `"forces"`, one normal force, or `"none"`.
+        touch: for InHandTurn: what is measured besides the joints, `"taxels"`, the reading of each
+            taxel, `"forces"`, one normal force for each fingertip, `"truth"`, what only the
+            simulation knows, several of these with `+` between them, or `"none"`.
         autoreset_mode: when an environment whose episode is over begins the next one: in the next
             step, in the same step, or when `reset` is called.
         n_threads: number of threads; as many as there are cores unless given. Results do not depend

@@ -60,6 +60,17 @@ def scripted_policy(kind: str, seed: int = 0) -> Policy:
     return scripts[kind](np.random.default_rng(seed))
 
 
+def seeing_policy() -> Policy:
+    """A scripted policy of InHandTurn that sees the object, as a teacher, and as the best that touch
+    can be compared with. It needs observations with `touch="truth"`, or with the truth first, as in
+    `touch="truth+taxels"`.
+
+    Returns:
+        The policy.
+    """
+    return _turn(sees=True)
+
+
 def returns(policy: Policy, tasks: Tasks) -> _Double:
     """The return (sum of the rewards) of one episode of each environment.
 
@@ -200,33 +211,53 @@ def _explore_shape(random: np.random.Generator) -> Policy:
 
 
 def _in_hand_turn(random: np.random.Generator) -> Policy:
-    """The scripted baseline of InHandTurn. The fingers swing back, close, and swing forward together.
-    The swing is determined by the wanted angle and by the angles of the closed fingers, which show
-    how wide the object is. So it is right for cylinders; how a box lay stays unknown.
+    """The scripted baseline of InHandTurn. The swing of the closed fingers is determined by the
+    wanted angle and by the angles of the joints, which show how wide the object is. So it is right
+    for cylinders; how a box lay stays unknown.
+    """
+    return _turn(sees=False)
+
+
+def _turn(sees: bool) -> Policy:
+    """The fingers swing back, close, and swing forward together: as far as a cylinder needs, or, if
+    the policy sees the object, until the angle is right.
     """
     from twintac.gymnasium._hand import CLOSE_RAD, SWING_RAD
-    from twintac.gymnasium._in_hand import N_HISTORY, N_JOINTS, N_STEPS, WANTED_RAD
+    from twintac.gymnasium._in_hand import FASTEST, N_HISTORY, N_JOINTS, N_STEPS, WANTED_RAD
 
     def scaled(rad: _Double, ends: tuple[float, float]) -> _Double:
         return (2.0 * rad - ends[0] - ends[1]) / (ends[1] - ends[0])
 
+    def angle_rad(scaled: _Double, ends: tuple[float, float]) -> _Double:
+        return 0.5 * (scaled * (ends[1] - ends[0]) + ends[0] + ends[1])
+
     closes, turns, stops = 5, 14, 40  # steps
-    # Fitted to 96 cylinders that this baseline turned: the swing for each radian that the object
-    # turns is `at_0 - slope sin(close)`. The fingers swing back by `back` before they close.
+    # Fitted to 96 cylinders: the swing for each radian that the object turns is
+    # `at_0 - slope sin(close)`. The fingers swing back by `back` before they close.
     back, at_0, slope = 0.12, 0.41, 1.08
+    # The part of the angle that is left, and the most, for which a seeing policy swings in a step.
+    part_of_left, most_rad = 0.2, 0.2
+    tight_rad = 0.3 if sees else 0.35
 
     def act(observed: Single) -> Single:
         step = np.round((1.0 - observed[:, -1]) * N_STEPS)
         n_frame = (observed.shape[1] - 2) // N_HISTORY
-        close = observed[:, n_frame - 2 * N_JOINTS : n_frame - N_JOINTS][:, 1::2].mean(axis=1)
-        close_rad = 0.5 * (close * (CLOSE_RAD[1] - CLOSE_RAD[0]) + CLOSE_RAD[0] + CLOSE_RAD[1])
+        joints, targets = np.split(observed[:, n_frame - 2 * N_JOINTS : n_frame], 2, axis=1)
+        close_rad = angle_rad(joints[:, 1::2].mean(axis=1), CLOSE_RAD)
         wanted_rad = -observed[:, -2] * WANTED_RAD[1]  # as the fingers swing
-        way_rad = wanted_rad * (at_0 - slope * np.sin(close_rad))
-        part = np.clip((step - turns) / (stops - turns), 0.0, 1.0)
-        grip_rad = np.where(step < closes, 0.0, np.where(step < turns, 0.06 + 0.03 * (step - closes), 0.35))
-        actions = np.empty((len(observed), N_JOINTS))
-        actions[:, 0::2] = scaled(part * way_rad - back * wanted_rad, SWING_RAD)[:, None]
-        actions[:, 1::2] = scaled(grip_rad, CLOSE_RAD)[:, None]
-        return np.clip(actions, -1.0, 1.0).astype(np.float32)
+        of_turn = at_0 - slope * np.sin(close_rad)
+        if sees:
+            left_rad = -observed[:, 0] * WANTED_RAD[1]
+            now_rad = angle_rad(targets[:, 0::2].mean(axis=1), SWING_RAD)
+            way_rad = now_rad + of_turn * np.clip(part_of_left * left_rad, -most_rad, most_rad)
+            swing_rad = np.where(step < turns, -back * wanted_rad, way_rad)
+        else:
+            part = np.clip((step - turns) / (stops - turns), 0.0, 1.0)
+            swing_rad = (part * of_turn - back) * wanted_rad
+        grip_rad = np.where(step < closes, 0.0, np.where(step < turns, 0.06 + 0.03 * (step - closes), tight_rad))
+        aim = np.empty((len(observed), N_JOINTS))
+        aim[:, 0::2] = scaled(swing_rad, SWING_RAD)[:, None]
+        aim[:, 1::2] = scaled(grip_rad, CLOSE_RAD)[:, None]
+        return np.clip((aim - targets) / (2.0 * FASTEST), -1.0, 1.0).astype(np.float32)
 
     return act

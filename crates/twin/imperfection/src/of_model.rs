@@ -37,6 +37,7 @@ pub fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
         let fields = [
             "gain_deviation",
             "growth_deviation_per_kpa",
+            "modulus_deviation",
             "height_deviation_mm",
             "place_deviation_mm",
             "turn_deviation_rad",
@@ -52,6 +53,10 @@ pub fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
     vec![
         casting.gain(),
         casting.growth(),
+        Line::left_out(
+            "modulus_deviation",
+            "a spread requires the gels of several sensors",
+        ),
         casting.height(),
         place,
         turn,

@@ -136,6 +136,7 @@ impl SensorBatch {
             wrench,
             |imperfection, chunk, first, readings_kpa, wrench| {
                 chunk.read(&moment, first, wrench);
+                chunk.stiffen(wrench);
                 chunk.sense(imperfection, since_previous_s, readings_kpa);
             },
         );

@@ -94,6 +94,24 @@ impl Chunk {
             .read_many(moment.bodies, touches, ends, &mut self.pressure_kpa, wrench);
     }
 
+    /// Scales all forces and pressures after [`Self::read`] and [`Self::hold`] to the moduli of the
+    /// gels: at given poses, stresses are proportional to the modulus.
+    pub(crate) fn stiffen(&mut self, wrench: &mut [[f32; 6]]) {
+        let n_taxels = self.gel.n_taxels().max(1);
+        let pressures = self.pressure_kpa.chunks_exact_mut(n_taxels);
+        let sensors = self.sensors.iter().zip(&self.ends).zip(pressures).zip(wrench);
+        let mut start = 0;
+        for (((sensor, end), pressure_kpa), wrench) in sensors {
+            let apart = self.wrench_of_touch.get_mut(start..*end).into_iter().flatten();
+            start = *end;
+            if sensor.modulus != 1.0 {
+                for number in pressure_kpa.iter_mut().chain(wrench).chain(apart.flatten()) {
+                    *number *= sensor.modulus;
+                }
+            }
+        }
+    }
+
     /// Computes the readings from the pressures of the gels.
     pub(crate) fn sense(
         &mut self,

@@ -90,6 +90,7 @@ impl CoupledBatch {
             |imperfection, chunk, first, readings_kpa, wrench| {
                 chunk.read(&moment, first, wrench);
                 chunk.hold(&moment, first, coupling, wrench);
+                chunk.stiffen(wrench);
                 chunk.sense(imperfection, since_previous_s, readings_kpa);
             },
         );

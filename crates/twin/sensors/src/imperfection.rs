@@ -46,6 +46,9 @@ pub struct Imperfection {
     pub rate_hz: f64,
     /// Deviation of the time between frames, as a fraction of it.
     pub jitter: f64,
+    /// Deviation of the logarithm of the gel's modulus from that of the surrogate's gel. Forces and
+    /// pressures at given poses are proportional to it.
+    pub modulus_deviation: f64,
     /// Deviation of the height at which the sensor is installed, mm.
     pub height_deviation_mm: f64,
     /// Deviation of the sensor's position along x and along y, mm.
@@ -86,6 +89,7 @@ impl Imperfection {
             ("noise_deviation_kpa", self.noise_deviation_kpa),
             ("quantum_kpa", self.quantum_kpa),
             ("rate_hz", self.rate_hz),
+            ("modulus_deviation", self.modulus_deviation),
             ("height_deviation_mm", self.height_deviation_mm),
             ("place_deviation_mm", self.place_deviation_mm),
             ("turn_deviation_rad", self.turn_deviation_rad),

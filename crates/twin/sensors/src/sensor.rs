@@ -20,6 +20,8 @@ pub(crate) struct Sensor {
     couplings: Vec<f64>,
     /// From the described frame of the sensor to its actual one.
     pub(crate) actual_from_described: Pose,
+    /// The gel's modulus relative to that of the surrogate's gel.
+    pub(crate) modulus: f32,
     temperature_k: f64,
     /// Time until the bus delivers the next frame, s.
     until_frame_s: f64,
@@ -74,6 +76,7 @@ impl Sensor {
                 position_mm,
                 rotation,
             },
+            modulus: modulus(imperfection, seed, number),
             temperature_k,
             until_frame_s: 0.0,
             since_frame_s: 0.0,
@@ -178,6 +181,13 @@ fn couplings(imperfection: &Imperfection, n_taxels: usize, random: &mut RandomSt
         if is_itself { 0.0 } else { part }
     });
     pairs.collect()
+}
+
+/// Draws the gel's relative modulus, from random numbers of its own: the other deviations do not
+/// depend on it.
+fn modulus(imperfection: &Imperfection, seed: u64, number: u64) -> f32 {
+    let mut random = stream(seed, &format!("gel {number}"));
+    normal(&mut random, imperfection.modulus_deviation).exp() as f32
 }
 
 impl Taxel {

@@ -63,6 +63,7 @@ fn all_imperfections() -> Imperfection {
         late_chance: 0.05,
         rate_hz: 60.0,
         jitter: 0.1,
+        modulus_deviation: 0.3,
         height_deviation_mm: 0.05,
         place_deviation_mm: 0.3,
         turn_deviation_rad: 0.01,
@@ -193,6 +194,39 @@ fn all_taxels_drift_alike_and_grow_in_their_own_way() {
             );
         }
     }
+}
+
+#[test]
+fn a_stiffer_gel_presses_back_and_reads_more_by_the_same_factor() {
+    let gel = FastGel::phystac().unwrap();
+    let n_sensors = 300;
+    let [perfect, stiff] = [0.0, 0.4].map(|modulus_deviation| {
+        let imperfection = Imperfection {
+            modulus_deviation,
+            ..Imperfection::default()
+        };
+        let mut batch = SensorBatch::new(&gel, None, imperfection, [n_sensors, 1], 3);
+        let (mut readings_kpa, mut wrench) = (vec![0.0; n_sensors * N_TAXELS], vec![[0.0; 6]; n_sensors]);
+        let ends: Vec<usize> = (1..=n_sensors).collect();
+        let touches = vec![touch(2.0, 1.5); n_sensors];
+        batch.step(0.01, &ball(), &touches, &ends, &mut readings_kpa, &mut wrench);
+        (readings_kpa, wrench)
+    });
+    let mut logarithms = Vec::new();
+    for sensor in 0..n_sensors {
+        let factor = stiff.1[sensor][2] / perfect.1[sensor][2];
+        let taxels = sensor * N_TAXELS..(sensor + 1) * N_TAXELS;
+        let readings = stiff.0[taxels.clone()].iter().zip(&perfect.0[taxels]);
+        for (found, before) in readings.chain(stiff.1[sensor].iter().zip(&perfect.1[sensor])) {
+            assert!(
+                (found - factor * before).abs() <= 1e-5 * found.abs() + 1e-7,
+                "{found} {before} {factor}"
+            );
+        }
+        logarithms.push(f64::from(factor).ln());
+    }
+    let square = logarithms.iter().map(|logarithm| logarithm.powi(2)).sum::<f64>() / n_sensors as f64;
+    assert!((square.sqrt() / 0.4 - 1.0).abs() < 0.1, "{square}");
 }
 
 #[test]
