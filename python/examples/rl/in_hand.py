@@ -255,15 +255,16 @@ def draw(path: Path, curves: list[dict[str, Any]], found: dict[str, Any]) -> Non
     """Plots the learning curves beside the baselines."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6, 3.6), layout="constrained")
+    figure = Figure(figsize=(7, 3.6), layout="constrained")
     axes = figure.add_subplot(xlabel="environment steps, thousands", ylabel=f"episodes within {NEAR_DEG:.0f} degrees, %", ylim=(0, 100))
     for run in dict.fromkeys(row["run"] for row in curves):
         own = [row for row in curves if row["run"] == run and row["actor"] == "student"]
-        axes.plot([1e-3 * row["steps"] for row in own], [100.0 * row["near"] for row in own], marker="o", markersize=3, label=run)
+        line = axes.plot([1e-3 * row["steps"] for row in own], [100.0 * row["near"] for row in own], marker="o", markersize=3, label=f"{run}, in training")
+        axes.plot(1e-3 * own[-1]["steps"], 100.0 * found[run]["near"][0], marker="*", markersize=12, color=line[0].get_color(), linestyle="", label=f"{run}, at the end, held out")
     for name, style in (("teacher, sees", "-."), ("script", "--"), ("chance", ":")):
         axes.axhline(100.0 * found[name]["near"][0], color="gray", linestyle=style, label=name)
     axes.set_title("InHandTurn: a student that feels learns from a teacher that sees (simulated)", fontsize=9)
-    axes.legend(loc="center right")
+    figure.legend(loc="outside right center", fontsize=8)
     axes.grid(alpha=0.3)
     figure.savefig(path, dpi=110)
 
