@@ -1,7 +1,6 @@
 """Tests of the example that trains a hand to turn objects."""
 
 import importlib.util
-import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -14,14 +13,18 @@ pytest.importorskip("mujoco.batch", reason="MuJoCo 4 or later is not installed")
 EXAMPLE = Path(__file__).parents[1] / "examples/rl/in_hand.py"
 
 
-@pytest.fixture
-def in_hand(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The example, with few episodes and fits."""
+def loaded() -> ModuleType:
     spec = importlib.util.spec_from_file_location("in_hand", EXAMPLE)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "in_hand", module)
     spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def in_hand(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The example, with few episodes and fits."""
+    module = loaded()
     for name, few in {"N_ENVS": 2, "N_FITS": 2, "N_LAST_FITS": 2, "N_TOGETHER": 2}.items():
         monkeypatch.setattr(module, name, few)
     return module
@@ -49,6 +52,13 @@ def test_a_training_that_was_stopped_continues_to_the_same_policy(in_hand: Modul
     assert actions[0].shape == (5, 8) and np.array_equal(*actions)
     curves = [[row["near"] for row in rows] for _, rows in policies]
     assert curves[0] == curves[1] and [row["actor"] for row in policies[0][1]] == ["teacher", "student"]
+
+
+def test_no_training_has_an_episode_of_the_test() -> None:
+    example = loaded()
+    assert example.first_seed(example.MOST_SEED + 1, 0) <= min(example.TEST_SEEDS)
+    assert example.first_seed(3, example.MOST_ROUNDS) <= example.first_seed(4, 0)
+    assert example.first_seed(3, 4) + example.N_ENVS <= example.first_seed(3, 5)
 
 
 def test_what_is_felt_has_no_truth(in_hand: ModuleType) -> None:

@@ -36,7 +36,8 @@ N_UNITS = 128
 TRUTH_WEIGHT = 0.5
 # Disturbances of the actions in training, and their correlation from step to step.
 DISTURBANCE, CORRELATION = 0.02, 0.9
-# Seeds of the episodes that no training has.
+# Seeds of the episodes that no training has: those of trainings are smaller.
+MOST_SEED, MOST_ROUNDS = 9, 100_000
 TEST_SEEDS, N_TEST = [10**9 + 10**6 * group for group in range(5)], 128
 NEAR_DEG = 5.0
 
@@ -154,6 +155,11 @@ def fit(student: Student, optimizer: torch.optim.Optimizer, rounds: list[Path], 
         optimizer.step()
 
 
+def first_seed(seed: int, number: int) -> int:
+    """Seed of the first episode of a round; those of the others follow."""
+    return 10**8 * seed + 1000 * number
+
+
 def kept(path: Path, write: Any) -> None:
     """Writes a file completely or not at all; `write` writes to the path that it gets."""
     partial = path.with_name(f"partial-{path.name}")
@@ -180,14 +186,14 @@ def train(touch: str, seed: int, n_rounds: int, out: Path) -> None:
     paths = [folder / f"round-{number:02d}.pt" for number in range(n_rounds)]
     for number in range(len(rows), n_rounds):
         started = time.monotonic()
-        first_seed = 10**8 * seed + 1000 * number
-        episodes = Episodes(remembering(student) if number > 0 else None, first_seed)
-        found = play(episodes.act, seen, first_seed, N_ENVS)
+        of_round = first_seed(seed, number)
+        episodes = Episodes(remembering(student) if number > 0 else None, of_round)
+        found = play(episodes.act, seen, of_round, N_ENVS)
         kept(paths[number], lambda partial: torch.save(episodes.tensors(), partial))
         part = number / n_rounds
         rate = LEARNING_RATES[0] + (LEARNING_RATES[1] - LEARNING_RATES[0]) * part
         is_last = number == n_rounds - 1
-        fit(student, optimizer, paths[: number + 1], first_seed, N_LAST_FITS if is_last else N_FITS, LAST_LEARNING_RATES if is_last else (rate, rate))
+        fit(student, optimizer, paths[: number + 1], of_round, N_LAST_FITS if is_last else N_FITS, LAST_LEARNING_RATES if is_last else (rate, rate))
         seconds = (rows[-1]["seconds"] if rows else 0.0) + time.monotonic() - started
         rows.append({"actor": "student" if number > 0 else "teacher", "steps": (number + 1) * N_ENVS * N_STEPS, "seconds": round(seconds, 1), "return": float(found["return"].mean()), "near": float(is_near(found).mean()), "dropped": float(found["is_dropped"].mean())})
         state = {"student": student.state_dict(), "optimizer": optimizer.state_dict(), "rows": rows}
@@ -289,7 +295,7 @@ def main() -> None:
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("train", help="train a policy")
     one.add_argument("--touch", choices=TOUCHES, default="taxels", help="what the fingertips measure (default: taxels)")
-    one.add_argument("--seed", type=int, default=1, help="of all that is random (default: 1)")
+    one.add_argument("--seed", type=int, choices=range(MOST_SEED + 1), default=1, help="of all that is random (default: 1)")
     one.add_argument("--rounds", type=int, default=N_ROUNDS, help=f"rounds of {N_ENVS} episodes (default: {N_ROUNDS})")
     one.add_argument("--out", type=Path, default=Path("runs/in-hand"), help="folder of the runs (default: runs/in-hand)")
     other = commands.add_parser("test", help="compare all trained policies with a teacher, a script and chance")
@@ -301,6 +307,8 @@ def main() -> None:
     filmed.add_argument("--seed", type=int, default=TEST_SEEDS[0], help="of the first of two episodes")
     asked = parser.parse_args()
     torch.set_num_threads(1)
+    if asked.command == "train" and not 2 <= asked.rounds <= MOST_ROUNDS:
+        one.error(f"argument --rounds: is {asked.rounds}, expected 2 to {MOST_ROUNDS}")
     if asked.command == "train":
         train(asked.touch, asked.seed, asked.rounds, asked.out)
     elif asked.command == "test":

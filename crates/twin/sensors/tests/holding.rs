@@ -114,6 +114,31 @@ fn several_bodies_share_the_force() {
 }
 
 #[test]
+fn a_stiffer_gel_holds_each_body_with_more_force_by_the_same_factor() {
+    let stiff = Imperfection {
+        modulus_deviation: 5.0,
+        ..Imperfection::default()
+    };
+    let [soft, stiff] = [Imperfection::default(), stiff].map(|imperfection| {
+        let mut batch = imperfect(imperfection, [1, 1], 0.005);
+        step(&mut batch, &[at(0, -8.0, 0.0, 1.0), at(1, 8.0, 0.0, 1.5)]);
+        // One sticks, one slips.
+        let (readings_kpa, wrench) = step(&mut batch, &[at(0, -7.9, 0.0, 1.1), at(1, 6.0, 0.0, 1.5)]);
+        let apart = batch.wrench_of_touches().flatten().copied();
+        let numbers: Vec<f32> = readings_kpa.into_iter().chain(wrench).chain(apart).collect();
+        numbers
+    });
+    let factor = stiff[8 + 2] / soft[8 + 2];
+    assert!((factor - 1.0).abs() > 0.1, "{factor}");
+    for (stiff, soft) in stiff.iter().zip(&soft) {
+        assert!(
+            (stiff - factor * soft).abs() <= 1e-5 * stiff.abs() + 1e-6,
+            "{stiff} {soft} {factor}"
+        );
+    }
+}
+
+#[test]
 fn sensors_hold_the_same_for_any_number_of_threads() {
     let moments: Vec<Vec<HeldTouch>> = (0..5)
         .map(|moment| {
