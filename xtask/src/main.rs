@@ -12,7 +12,7 @@ use xtask::{figures, fuzz, layers, readme, results, web};
 
 const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | crates | results [FILE] | pictures [NAME] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench view | bench import [--json] | bench twin |
     bench sensors [--rewrite] |
-    fuzz [target…] [--seconds N] [--jobs N] [--keep] | hardware [--sensor FILE [--chip NAME]] [--out DIR] [--release] | web | verify [rung…] [--quick] [--json] [--ccx CASE] [--quadratic CASE]>
+    fuzz [target…] [--seconds N] [--jobs N] [--keep] | hardware [--sensor FILE [--chip NAME]] [--out DIR] [--release] | web | verify [rung…] [--quick] [--json] [--ccx CASE] [--finer CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
   package every crate that can be published, without building it again; nothing may be uncommitted

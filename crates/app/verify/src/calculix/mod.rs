@@ -13,13 +13,13 @@ mod rigid;
 
 use std::path::Path;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use twintac_plot::{Ink, Scene};
 use twintac_plot::{Panel, Panels};
 
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 use case::{Case, LINE_Y_MM, Level, line_mm};
-use compare::{Compared, FINER};
+use compare::Compared;
 use reference::Reference;
 
 /// Where references come from.
@@ -27,25 +27,25 @@ use reference::Reference;
 pub(crate) enum Source {
     /// The independent program.
     Calculix,
-    /// This project's quadratic elements, on meshes that are fine at rims.
-    Quadratic,
+    /// This project's solver on meshes that are finer and of elements that bend everywhere.
+    Finer,
 }
 
 impl Source {
-    const ALL: [Self; 2] = [Self::Calculix, Self::Quadratic];
+    const ALL: [Self; 2] = [Self::Calculix, Self::Finer];
 
     /// The file that keeps them.
     fn file(self) -> &'static str {
         match self {
             Self::Calculix => "crates/app/verify/references/calculix.json",
-            Self::Quadratic => "crates/app/verify/references/quadratic.json",
+            Self::Finer => "crates/app/verify/references/finer.json",
         }
     }
 
     fn name(self) -> &'static str {
         match self {
             Self::Calculix => "CalculiX",
-            Self::Quadratic => "quadratic elements",
+            Self::Finer => "finer meshes",
         }
     }
 }
@@ -59,34 +59,33 @@ const ROUGHNESS_LIMIT_PERCENT: f64 = 3.0;
 
 /// Compares with the kept references.
 pub(crate) fn run(_: Effort) -> Result<Outcome> {
-    let [calculix, quadratic] = Source::ALL.map(|source| reference::read(Path::new(source.file())));
-    let (calculix, quadratic) = (calculix?, quadratic?);
+    let [calculix, finer] = Source::ALL.map(|source| reference::read(Path::new(source.file())));
+    let (calculix, finer) = (calculix?, finer?);
     let (mut compared, mut figures) = (Vec::new(), Vec::new());
     for case in case::all() {
-        let is_whole = |reference: &&Reference| reference.frames.len() == case.depths_mm.len();
-        let theirs = finest(&calculix, &case);
-        if let Some(theirs) = theirs {
+        if let Some(theirs) = finest(&calculix, &case) {
+            let is_whole = theirs.frames.len() == case.depths_mm.len();
             let ours = compare::compare(&case, theirs)?;
-            // Its limits stay until a better reference is kept.
-            let is_reference = is_whole(&theirs) || finest(&quadratic, &case).is_none();
-            figures.extend(figures_of(&ours, Source::Calculix, is_reference));
+            figures.extend(figures_of(&ours, Source::Calculix, is_whole));
             figures.push(nodes_of(&case, Source::Calculix, theirs));
-            if is_whole(&theirs) {
+            if is_whole {
                 compared.push(ours);
                 continue;
             }
         }
-        let theirs = match finest(&quadratic, &case) {
-            Some(kept) => kept.clone(),
-            None => compare::quadratic(&case, Level::Coarse)?,
-        };
+        let is_it = |reference: &&Reference| reference.case == case.name;
+        let meshes: Vec<&Reference> = finer.iter().filter(is_it).collect();
+        let theirs = Reference::mean(&meshes).with_context(|| {
+            format!(
+                "no reference of {0} is kept; `cargo xtask verify calculix --finer {0}` computes it",
+                case.name
+            )
+        })?;
         let ours = compare::compare(&case, &theirs)?;
-        figures.extend(figures_of(&ours, Source::Quadratic, true));
-        figures.push(nodes_of(&case, Source::Quadratic, &theirs));
-        figures.extend(uncertainty(&quadratic, &case));
-        let n_missing = (case.depths_mm.len() - theirs.frames.len()) as f64;
-        let name = format!("{}: depths without a reference", case.name);
-        figures.push(Figure::at_most(0.0, name, n_missing, ""));
+        figures.extend(figures_of(&ours, Source::Finer, true));
+        for mesh in meshes {
+            figures.extend(uncertainty(&case, mesh, &theirs));
+        }
         compared.push(ours);
     }
     Ok(Outcome {
@@ -103,17 +102,16 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
              {LINE_Y_MM} mm) the error is the root mean square, relative to the largest pressure there; a \
              checkerboard pattern at ν = 0.4999 would increase it.\n\nCalculiX reaches all depths for the \
              sphere at ν = 0.49 alone. For the cylinder and the bar it solves a coarse mesh (1,400 to 1,700 \
-             elements) to 1 mm, whose pressures far from the indenter are not accurate; at ν = 0.4999 it finds no \
-             equilibrium. For these cases the reference is TwinTac's \
-             10-node elements with a pressure field of their own, on a mesh that is {FINER} times finer and \
-             fine at rims. Their difference from a coarser mesh is stated as the uncertainty of the \
-             reference. Where none is stored, as now, the mesh is that of the comparison, its uncertainty is not \
-             known, and the limits beside CalculiX stay.\n\nThe \
+             elements) to 1 mm, whose force has a limit, but whose pressures far from the indenter are not \
+             accurate; at ν = 0.4999 it finds no equilibrium. For these cases the reference is TwinTac's own \
+             solver with elements that are quadratic everywhere, on three meshes that are finer, also at \
+             rims: the mean of the three. How far each of them is from it shows how large its own error may \
+             be.\n\nThe \
              references are stored in `{}` and `{}`; `cargo xtask verify calculix --ccx \
-             CASE` (Debian package calculix-ccx, in `{}`) and `--quadratic CASE` compute them again for the \
-             cases whose names start with CASE, on a coarse and on a fine mesh.",
+             CASE` (Debian package calculix-ccx, in `{}`) and `--finer CASE` compute them again for the \
+             cases whose names start with CASE.",
             Source::Calculix.file(),
-            Source::Quadratic.file(),
+            Source::Finer.file(),
             reference::FOLDER
         ),
         figures,
@@ -144,12 +142,12 @@ fn nodes_of(case: &Case, source: Source, reference: &Reference) -> Figure {
 }
 
 /// The errors of a case. Pressures have limits if `is_reference`: those of CalculiX's coarse meshes
-/// have none where quadratic elements on a finer mesh are kept as the reference.
+/// have none.
 fn figures_of(compared: &Compared, source: Source, is_reference: bool) -> Vec<Figure> {
     let largest = |errors: &mut dyn Iterator<Item = f64>| errors.map(f64::abs).fold(0.0, f64::max);
     let case = match source {
         Source::Calculix => compared.case.clone(),
-        Source::Quadratic => format!("{} beside {}", compared.case, source.name()),
+        Source::Finer => format!("{} beside {}", compared.case, source.name()),
     };
     let mut figures = vec![Figure::told(
         format!("{case}: nodes"),
@@ -188,22 +186,14 @@ fn figures_of(compared: &Compared, source: Source, is_reference: bool) -> Vec<Fi
     figures
 }
 
-/// The uncertainty of a reference by quadratic elements: its largest differences from a coarser
-/// mesh.
-fn uncertainty(references: &[Reference], case: &Case) -> Vec<Figure> {
-    let of = |is_fine: bool| {
-        let is_it = |reference: &&Reference| reference.case == case.name && reference.is_fine == is_fine;
-        references.iter().find(is_it)
-    };
-    let (Some(fine), Some(coarse)) = (of(true), of(false)) else {
-        return Vec::new();
-    };
-    let [force, pressure] = coarse.largest_difference_percent(fine);
+/// The largest differences of a mesh of a reference from the mean of its meshes.
+fn uncertainty(case: &Case, mesh: &Reference, mean: &Reference) -> [Figure; 2] {
+    let [force, pressure] = mesh.largest_difference_percent(mean);
     let about = format!(
-        "{}: quadratic elements, {} beside {} nodes",
-        case.name, coarse.n_nodes, fine.n_nodes
+        "{}: finer mesh of {} nodes from their mean",
+        case.name, mesh.n_nodes
     );
-    vec![
+    [
         Figure::told(format!("{about}: force"), force, "%"),
         Figure::told(format!("{about}: pressure at the worst taxel"), pressure, "%"),
     ]
@@ -220,7 +210,7 @@ fn plot(compared: &[Compared]) -> Scene {
                     0 => plots::line("TwinTac", 0, points),
                     _ => twintac_plot::Series {
                         ink: Ink::Text,
-                        ..plots::dashes("CalculiX, or quadratic elements", 0, points)
+                        ..plots::dashes("CalculiX, or finer meshes", 0, points)
                     },
                 }
             })
@@ -242,8 +232,8 @@ fn plot(compared: &[Compared]) -> Scene {
     .scene()
 }
 
-/// Computes the references of the cases whose names start with `prefix`, on two meshes each, and
-/// keeps them.
+/// Computes the references of the cases whose names start with `prefix`, on several meshes each,
+/// and keeps them.
 pub(crate) fn compute_references(source: Source, prefix: &str) -> Result<()> {
     let file = Path::new(source.file());
     let cases = case::all();
@@ -258,17 +248,17 @@ pub(crate) fn compute_references(source: Source, prefix: &str) -> Result<()> {
         names.join(", ")
     );
     for case in chosen {
-        for level in [Level::Coarse, Level::Fine] {
-            let found = match source {
-                Source::Calculix => reference::compute(case, level)?,
-                Source::Quadratic => compare::quadratic(case, level)?,
-            };
-            let is_same = |other: &Reference| other.case == found.case && other.is_fine == found.is_fine;
-            let mut kept = reference::read(file)?;
-            kept.retain(|other| !is_same(other));
-            kept.push(found);
-            reference::write(file, &mut kept)?;
-        }
+        let found = match source {
+            Source::Calculix => [Level::Coarse, Level::Fine]
+                .map(|level| reference::compute(case, level))
+                .into_iter()
+                .collect::<Result<_>>()?,
+            Source::Finer => compare::finer(case)?,
+        };
+        let mut kept = reference::read(file)?;
+        kept.retain(|other| other.case != case.name);
+        kept.extend(found);
+        reference::write(file, &mut kept)?;
     }
     Ok(())
 }

@@ -28,8 +28,6 @@ const KPA_PER_MPA: f64 = 1000.0;
 pub(super) struct Reference {
     /// Name of the case.
     pub(super) case: String,
-    /// Whether it is the reference for comparison.
-    pub(super) is_fine: bool,
     /// Elements of the gel.
     pub(super) n_elements: usize,
     /// Nodes of the gel.
@@ -53,6 +51,30 @@ pub(super) struct ReferenceFrame {
 }
 
 impl Reference {
+    /// The mean of forces and pressures of the same press on several meshes; `None` without meshes
+    /// or if they have other depths. The numbers of elements and nodes are those of the finest mesh.
+    pub(super) fn mean(meshes: &[&Self]) -> Option<Self> {
+        let mut mean = (*meshes.iter().max_by_key(|mesh| mesh.n_elements)?).clone();
+        if meshes.iter().any(|mesh| mesh.frames.len() != mean.frames.len()) {
+            return None;
+        }
+        for (index, frame) in mean.frames.iter_mut().enumerate() {
+            let frames: Vec<&ReferenceFrame> = meshes.iter().map(|mesh| &mesh.frames[index]).collect();
+            let mean_of = |value: &dyn Fn(&ReferenceFrame) -> f64| {
+                frames.iter().map(|frame| value(frame)).sum::<f64>() / frames.len() as f64
+            };
+            frame.force_n = mean_of(&|frame| frame.force_n);
+            frame.penetration_mm = mean_of(&|frame| frame.penetration_mm);
+            for (taxel, kpa) in &mut frame.pressure_kpa {
+                *kpa = mean_of(&|frame| frame.pressure_kpa.get(taxel).copied().unwrap_or(f64::NAN));
+            }
+            for (point, kpa) in frame.line_kpa.iter_mut().enumerate() {
+                *kpa = mean_of(&|frame| frame.line_kpa[point]);
+            }
+        }
+        Some(mean)
+    }
+
     /// Largest differences of force and of pressures at the taxels from another mesh, %.
     pub(super) fn largest_difference_percent(&self, other: &Self) -> [f64; 2] {
         let (mut force, mut pressure): (f64, f64) = (0.0, 0.0);
@@ -132,7 +154,6 @@ pub(super) fn compute(case: &Case, level: Level) -> Result<Reference> {
     }
     Ok(Reference {
         case: case.name.clone(),
-        is_fine: level == Level::Fine,
         n_elements: gel.bricks.len(),
         n_nodes: gel.nodes_mm.len(),
         frames,
@@ -168,7 +189,7 @@ pub(super) fn read(file: &Path) -> Result<Vec<Reference>> {
 
 /// Writes references, sorted, to a file.
 pub(super) fn write(file: &Path, references: &mut [Reference]) -> Result<()> {
-    references.sort_by(|a, b| (&a.case, a.is_fine).cmp(&(&b.case, b.is_fine)));
+    references.sort_by(|a, b| (&a.case, a.n_elements).cmp(&(&b.case, b.n_elements)));
     for frame in references.iter_mut().flat_map(|reference| &mut reference.frames) {
         // CalculiX writes fewer than six digits of a stress.
         let numbers = frame.pressure_kpa.values_mut().chain(&mut frame.line_kpa);
@@ -179,4 +200,38 @@ pub(super) fn write(file: &Path, references: &mut [Reference]) -> Result<()> {
         .map(serde_json::to_string)
         .collect::<Result<_, _>>()?;
     write_whole(file, format!("[\n{}\n]\n", rows.join(",\n")).as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_mesh(n_elements: usize, force_n: f64, kpa: f64) -> Reference {
+        Reference {
+            case: "case".into(),
+            n_elements,
+            n_nodes: 2 * n_elements,
+            frames: vec![ReferenceFrame {
+                depth_mm: 1.0,
+                force_n,
+                penetration_mm: 0.0,
+                pressure_kpa: [("t0".to_owned(), kpa)].into(),
+                line_kpa: vec![2.0 * kpa],
+            }],
+        }
+    }
+
+    #[test]
+    fn the_mean_of_meshes_is_of_each_value() -> Result<()> {
+        let meshes = [on_mesh(100, 1.0, 10.0), on_mesh(300, 2.0, 20.0)];
+        let mean = Reference::mean(&meshes.each_ref()).context("there are meshes")?;
+        assert_eq!(mean.n_elements, 300);
+        assert_eq!(mean.frames[0].force_n, 1.5);
+        assert_eq!(mean.frames[0].pressure_kpa["t0"], 15.0);
+        assert_eq!(mean.frames[0].line_kpa, [30.0]);
+        let [force, pressure] = meshes[0].largest_difference_percent(&mean);
+        assert!((force - 100.0 / 3.0).abs() < 1e-9 && (pressure - 100.0 / 3.0).abs() < 1e-9);
+        assert!(Reference::mean(&[]).is_none());
+        Ok(())
+    }
 }

@@ -118,10 +118,10 @@ pub(crate) struct Options {
     /// whose names start with this text
     #[arg(long, value_name = "CASE")]
     ccx: Option<String>,
-    /// Compute the references of test 8 by quadratic elements (minutes a case) for the cases whose
+    /// Compute the references of test 8 on finer meshes (ten minutes a case) for the cases whose
     /// names start with this text
     #[arg(long, value_name = "CASE")]
-    quadratic: Option<String>,
+    finer: Option<String>,
     /// Folder to which the pages are written
     #[arg(long, default_value = "docs/verification")]
     folder: PathBuf,
@@ -130,10 +130,7 @@ pub(crate) struct Options {
 /// Runs the tests, and returns whether all limits hold.
 pub(crate) fn run(options: &Options) -> Result<bool> {
     let rungs = chosen(&options.rungs)?;
-    for (source, prefix) in [
-        (Source::Calculix, &options.ccx),
-        (Source::Quadratic, &options.quadratic),
-    ] {
+    for (source, prefix) in [(Source::Calculix, &options.ccx), (Source::Finer, &options.finer)] {
         if let Some(prefix) = prefix {
             calculix::compute_references(source, prefix)?;
         }
