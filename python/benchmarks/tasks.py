@@ -70,9 +70,9 @@ def together() -> dict[str, dict[str, Any]]:
     """
     timed = {}
     for kind in KINDS:
-        for name, imperfection in ((kind, None), (f"{kind}, perfect sensors", twintac.Imperfection())):
+        for name, variation in ((kind, None), (f"{kind}, perfect sensors", twintac.SensorVariation())):
             n = N_HANDS if kind == "InHandTurn" else N_ENVIRONMENTS
-            env = gym.make_vec(f"TwinTac/{kind}-v0", num_envs=n, imperfection=imperfection, n_threads=N_THREADS)
+            env = gym.make_vec(f"TwinTac/{kind}-v0", num_envs=n, variation=variation, n_threads=N_THREADS)
             timed[name] = Timed(env, policy_of(kind))
     cart = gym.make_vec("CartPole-v1", num_envs=N_ENVIRONMENTS)
     timed["CartPole-v1"] = Timed(cart, lambda _: np.zeros(N_ENVIRONMENTS, np.int64))

@@ -19,7 +19,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from twintac import Body, Coupling, FastGel, Imperfection, Sensor, SensorBatch, Shape
+from twintac import Body, Coupling, FastGel, Sensor, SensorBatch, SensorVariation, Shape
 from twintac.mujoco import TouchSensors, add_sensor
 
 Array = npt.NDArray[np.float64]
@@ -37,7 +37,7 @@ FRAMES = 12  # number of averaged frames, at 55 Hz
 # The lower row minus the upper row: the difference between the rows.
 PARTING = np.repeat([1.0, -1.0], 4)
 # Noise and resolution of readings on the emulated bench.
-SENSOR = Imperfection(noise_deviation_kpa=0.015, quantum_kpa=0.01, rate_hz=55.0)
+SENSOR = SensorVariation(noise_deviation_kpa=0.015, quantum_kpa=0.01, rate_hz=55.0)
 
 
 class Thing(NamedTuple):
@@ -157,7 +157,7 @@ class Gripper:
     def __init__(self, thing: Thing, seed: int) -> None:
         self.model = scene(thing)
         self.data = mujoco.MjData(self.model)
-        self.touch = TouchSensors(self.model, ["left", "right"], imperfection=SENSOR, friction=FRICTION, seed=seed)
+        self.touch = TouchSensors(self.model, ["left", "right"], variation=SENSOR, friction=FRICTION, seed=seed)
         gap_m = APART_M - 1e-3 * float(Sensor.phystac().bounds_mm[1, 2]) - thing.size_m[0]
         self.closed_mm, self.risen_mm = 1e3 * gap_m - 1.0, 0.0
         # The true mean force of the fingers, now and at most, for the evaluation only.

@@ -84,8 +84,8 @@ impl Contact {
     /// Yaw (rotation about the vertical axis), radians, modulo the symmetry of the shape; 0 for a
     /// round shape.
     #[getter]
-    fn spin_rad(&self) -> f64 {
-        self.contact.spin_rad
+    fn yaw_rad(&self) -> f64 {
+        self.contact.yaw_rad
     }
 
     /// Force into the gel, N.
@@ -108,8 +108,8 @@ impl Contact {
 
     /// Standard deviation of the yaw, radians; 0 for a round shape.
     #[getter]
-    fn spin_deviation_rad(&self) -> f64 {
-        self.contact.spin_deviation_rad
+    fn yaw_deviation_rad(&self) -> f64 {
+        self.contact.yaw_deviation_rad
     }
 
     /// Standard deviation of the force, N.

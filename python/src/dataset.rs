@@ -32,7 +32,7 @@ const MOST_PRESSES: usize = 100_000_000;
 ///   or the path of a file. Without it, the gel is computed with finite elements.
 /// - `twin`: folder of the twin that computes the readings; unless given, readings are the
 ///   pressures at the ports.
-/// - `imperfection`: path of the sensor variation (TOML), from which each press gets an imperfect
+/// - `variation`: path of the sensor variation (TOML), from which each press gets an imperfect
 ///   sensor of its own. It needs `fast`.
 /// - `settings`: path of a file (TOML) that may have a table `[simulate]` with settings of the
 ///   simulation; not together with `twin`.
@@ -56,7 +56,7 @@ pub(crate) enum Fast {
 #[pymethods]
 impl Dataset {
     #[new]
-    #[pyo3(signature = (*, sensor=None, protocol=None, indenters=Vec::new(), n_presses=None, seed=None, fast=Fast::Chosen(false), twin=None, imperfection=None, settings=None), text_signature = "(*, sensor=None, protocol=None, indenters=..., n_presses=None, seed=1, fast=..., twin=None, imperfection=None, settings=None)")]
+    #[pyo3(signature = (*, sensor=None, protocol=None, indenters=Vec::new(), n_presses=None, seed=None, fast=Fast::Chosen(false), twin=None, variation=None, settings=None), text_signature = "(*, sensor=None, protocol=None, indenters=..., n_presses=None, seed=1, fast=..., twin=None, variation=None, settings=None)")]
     #[expect(clippy::too_many_arguments)] // named ones
     fn new(
         py: Python<'_>,
@@ -67,7 +67,7 @@ impl Dataset {
         seed: Option<Given<'_>>,
         fast: Fast,
         twin: Option<PathBuf>,
-        imperfection: Option<PathBuf>,
+        variation: Option<PathBuf>,
         settings: Option<PathBuf>,
     ) -> PyResult<Self> {
         if protocol.is_some() && !indenters.is_empty() {
@@ -90,7 +90,7 @@ impl Dataset {
                 Fast::File(file) => Some(FastSource::File(file)),
             },
             twin,
-            imperfection,
+            variation,
             settings,
         };
         let dataset = py

@@ -212,8 +212,8 @@ impl FastReader {
     /// there.
     ///
     /// - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
-    fn novelty(&self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> PyResult<f32> {
-        self.reader.work(py, |reader| reader.novelty(&placed(&bodies)))
+    fn ood_score(&self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> PyResult<f32> {
+        self.reader.work(py, |reader| reader.ood_score(&placed(&bodies)))
     }
 
     /// Raises `TypeError`: a `FastReader` cannot be pickled or copied.

@@ -39,7 +39,7 @@ use crate::table::ReadingTable;
 /// - `correlated_s`: time within which errors of the model count as one, s; 0.1.
 /// - `touch_deviations`: there is a contact if at least one reading is this many standard
 ///   deviations of the noise above zero; 6.
-/// - `place_walk_mm`, `depth_walk_mm`, `spin_walk_rad`: standard deviation of the random motion of
+/// - `place_walk_mm`, `depth_walk_mm`, `yaw_walk_rad`: standard deviation of the random motion of
 ///   a contact in one second: location, 3 mm, depth, 2 mm, and yaw, 1 radian.
 /// - `shape_memory_s`: time after which evidence for a shape is reduced to 1/e, s; 3.
 /// - `n_starts`, `n_steps`: number of possible presses of each shape that are followed at once, 3,

@@ -108,7 +108,7 @@ mod _twintac {
     #[pymodule_export]
     use crate::sensor::Sensor;
     #[pymodule_export]
-    use crate::sensors::{Coupling, Imperfection, SensorBatch, SensorState};
+    use crate::sensors::{Coupling, SensorBatch, SensorState, SensorVariation};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
     #[pymodule_export]

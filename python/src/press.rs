@@ -22,7 +22,7 @@ const SLOWEST_MM_PER_S: f64 = 1e-3;
 /// - `at_mm`: location of the indenter's origin in the gel's plane, x and y, mm; the middle of the
 ///   gel unless given.
 /// - `depth_mm`: depth below first touch, mm, above 0.
-/// - `spin_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
+/// - `yaw_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
 /// - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
 /// - `hold_s`: time at full depth, s, at most an hour.
 ///
@@ -38,7 +38,7 @@ pub(crate) struct Press {
     /// Depth below first touch, mm.
     depth_mm: f64,
     /// Yaw (rotation of the indenter about the axis of the press), radians.
-    spin_rad: f64,
+    yaw_rad: f64,
     /// Speed down and up, mm/s.
     speed_mm_per_s: f64,
     /// Time at full depth, s.
@@ -49,15 +49,15 @@ pub(crate) struct Press {
 impl Press {
     #[new]
     #[pyo3(
-        signature = (indenter, *, at_mm=None, depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0),
-        text_signature = "(indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0)"
+        signature = (indenter, *, at_mm=None, depth_mm=1.0, yaw_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0),
+        text_signature = "(indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, yaw_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0)"
     )]
     fn new(
         py: Python<'_>,
         indenter: String,
         at_mm: Option<Given<'_>>,
         depth_mm: f64,
-        spin_rad: f64,
+        yaw_rad: f64,
         speed_mm_per_s: f64,
         hold_s: f64,
     ) -> PyResult<Self> {
@@ -70,7 +70,7 @@ impl Press {
             ("hold_s", hold_s, 0.0..=LONGEST_S, "s"),
             ("at_mm", at_mm.0, of_size.clone(), "mm"),
             ("at_mm", at_mm.1, of_size, "mm"),
-            ("spin_rad", spin_rad, -1e3..=1e3, "radians"),
+            ("yaw_rad", yaw_rad, -1e3..=1e3, "radians"),
         ] {
             if !range.contains(&value) {
                 let (least, most) = (range.start(), range.end());
@@ -89,7 +89,7 @@ impl Press {
             indenter,
             at_mm,
             depth_mm,
-            spin_rad,
+            yaw_rad,
             speed_mm_per_s,
             hold_s,
         })
@@ -102,8 +102,8 @@ impl Press {
 
     fn __repr__(&self) -> String {
         format!(
-            "Press({:?}, at_mm={:?}, depth_mm={:?}, spin_rad={:?}, speed_mm_per_s={:?}, hold_s={:?})",
-            self.indenter, self.at_mm, self.depth_mm, self.spin_rad, self.speed_mm_per_s, self.hold_s
+            "Press({:?}, at_mm={:?}, depth_mm={:?}, yaw_rad={:?}, speed_mm_per_s={:?}, hold_s={:?})",
+            self.indenter, self.at_mm, self.depth_mm, self.yaw_rad, self.speed_mm_per_s, self.hold_s
         )
     }
 }
@@ -125,7 +125,7 @@ impl From<&Press> for twintac::Press {
         Self::with(&press.indenter)
             .at_mm(press.at_mm.0, press.at_mm.1)
             .depth_mm(press.depth_mm)
-            .spin_rad(press.spin_rad)
+            .yaw_rad(press.yaw_rad)
             .speed_mm_per_s(press.speed_mm_per_s)
             .hold_s(press.hold_s)
     }

@@ -16,7 +16,7 @@ use crate::reader::Reading;
 use crate::recording::Recording;
 use crate::run::Run;
 use crate::sensor::Sensor;
-use crate::sensors::{Coupling, Imperfection};
+use crate::sensors::{Coupling, SensorVariation};
 use crate::shape::{Body, Shape};
 use crate::table::ReadingTable;
 use crate::twin::{Prediction, Twin};
@@ -31,7 +31,6 @@ pub(crate) fn _restored(py: Python<'_>, class: &str, state: &[u8]) -> PyResult<P
         "FastGel" => of::<FastGel>(py, class, state),
         "Followed" => of::<Followed>(py, class, state),
         "Gel" => of::<Gel>(py, class, state),
-        "Imperfection" => of::<Imperfection>(py, class, state),
         "Pose" => of::<Pose>(py, class, state),
         "Prediction" => of::<Prediction>(py, class, state),
         "Press" => of::<Press>(py, class, state),
@@ -43,6 +42,7 @@ pub(crate) fn _restored(py: Python<'_>, class: &str, state: &[u8]) -> PyResult<P
         "Recording" => of::<Recording>(py, class, state),
         "Run" => of::<Run>(py, class, state),
         "Sensor" => of::<Sensor>(py, class, state),
+        "SensorVariation" | "Imperfection" => of::<SensorVariation>(py, class, state),
         "Shape" => of::<Shape>(py, class, state),
         "Twin" => of::<Twin>(py, class, state),
         _ => Err(unusable(

@@ -26,13 +26,13 @@ const NO_TOUCH_ID: &str = "is missing: sensors with a `coupling` remember each t
     `touch_id=body` where each body is one thing";
 
 /// Name of the table of sensor variation in a file.
-const TABLE: &str = "imperfection";
+const TABLE: &str = "variation";
 
 /// Sensor variation: the distributions from which each sensor's deviations from a perfect sensor
 /// are drawn.
 ///
-/// Keywords are the fields of the table `[imperfection]` in a file. Each is 0 unless given;
-/// `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of a normal
+/// Keywords are the fields of the table `[variation]` in a file. Each is 0 unless given;
+/// `SensorVariation()` is a perfect sensor. A *deviation* is the standard deviation of a normal
 /// distribution about zero.
 ///
 /// - `gain_deviation`: deviation of each taxel's gain, as a fraction of the gain.
@@ -63,24 +63,24 @@ const TABLE: &str = "imperfection";
 /// Raises `Error` for a value that is not allowed; its `field` names the keyword.
 #[pyclass(frozen, eq, from_py_object, module = "twintac")]
 #[derive(Clone, PartialEq)]
-pub(crate) struct Imperfection {
-    pub(crate) imperfection: twintac::Imperfection,
+pub(crate) struct SensorVariation {
+    pub(crate) variation: twintac::SensorVariation,
 }
 
 #[pymethods]
-impl Imperfection {
+impl SensorVariation {
     #[new]
     #[pyo3(signature = (**fields))]
     fn new(py: Python<'_>, fields: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
         let text = as_toml(py, fields.as_ref(), TABLE)?;
-        let imperfection = twintac::Imperfection::parse(TABLE, &text);
+        let variation = twintac::SensorVariation::parse(TABLE, &text);
         Ok(Self {
-            imperfection: imperfection
+            variation: variation
                 .map_err(|error| refused(py, TABLE, [&error.field, &error.problem, &error.hint]))?,
         })
     }
 
-    /// Reads a file (TOML) with the table `[imperfection]`. `twintac fast imperfection` makes such
+    /// Reads a file (TOML) with the table `[variation]`. `twintac fast variation` makes such
     /// files.
     ///
     /// Raises `Error` with file, line and field if the file is wrong, and with the file if it
@@ -88,9 +88,9 @@ impl Imperfection {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
-        let imperfection = twintac::Imperfection::parse(&path.display().to_string(), &text);
+        let variation = twintac::SensorVariation::parse(&path.display().to_string(), &text);
         Ok(Self {
-            imperfection: imperfection.map_err(twintac::WorkError::from).or_raise(py)?,
+            variation: variation.map_err(twintac::WorkError::from).or_raise(py)?,
         })
     }
 
@@ -100,14 +100,14 @@ impl Imperfection {
     #[staticmethod]
     fn usual() -> Self {
         Self {
-            imperfection: twintac::usual_imperfection(),
+            variation: twintac::usual_variation(),
         }
     }
 
     /// All fields by name, including those that are 0.
     fn fields(&self, py: Python<'_>) -> PyResult<BTreeMap<String, f64>> {
         let mut bytes = Vec::new();
-        let written = ciborium::into_writer(&self.imperfection, &mut bytes);
+        let written = ciborium::into_writer(&self.variation, &mut bytes);
         written.map_err(|error| unusable(py, TABLE, &error.to_string()))?;
         ciborium::from_reader(&bytes[..]).map_err(|error| unusable(py, TABLE, &error.to_string()))
     }
@@ -118,19 +118,19 @@ impl Imperfection {
     }
 
     fn __repr__(&self) -> String {
-        format!("<{:?}>", self.imperfection)
+        format!("<{:?}>", self.variation)
     }
 }
 
-impl Kept for Imperfection {
-    type State = twintac::Imperfection;
+impl Kept for SensorVariation {
+    type State = twintac::SensorVariation;
 
-    fn state(&self, _: Python<'_>) -> PyResult<twintac::Imperfection> {
-        Ok(self.imperfection.clone())
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::SensorVariation> {
+        Ok(self.variation.clone())
     }
 
-    fn restored(_: Python<'_>, imperfection: twintac::Imperfection) -> PyResult<Self> {
-        Ok(Self { imperfection })
+    fn restored(_: Python<'_>, variation: twintac::SensorVariation) -> PyResult<Self> {
+        Ok(Self { variation })
     }
 }
 
@@ -207,7 +207,7 @@ impl Kept for Coupling {
 /// - `bodies`: the bodies that may touch them, at least one.
 /// - `n_sensors`: number of sensors, from 1 to as many as give ten million readings: 1,250,000
 ///   sensors of eight taxels.
-/// - `imperfection`: the sensor variation from which each sensor's deviations are drawn; perfect
+/// - `variation`: the sensor variation from which each sensor's deviations are drawn; perfect
 ///   sensors unless given.
 /// - `twin`: the twin whose barometers they have, with its gains and viscoelastic relaxation;
 ///   readings are the pressures at the ports unless given.
@@ -273,21 +273,21 @@ impl SensorState {
 #[pymethods]
 impl SensorBatch {
     #[new]
-    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=None, n_threads=None), text_signature = "(gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None)")]
+    #[pyo3(signature = (gel, bodies, n_sensors, *, variation=None, twin=None, coupling=None, seed=None, n_threads=None), text_signature = "(gel, bodies, n_sensors, *, variation=None, twin=None, coupling=None, seed=0, n_threads=None)")]
     #[allow(clippy::too_many_arguments)] // keywords in Python
     fn new(
         py: Python<'_>,
         gel: &FastGel,
         bodies: Vec<Body>,
         n_sensors: Given<'_>,
-        imperfection: Option<Imperfection>,
+        variation: Option<SensorVariation>,
         twin: Option<PyRef<'_, Twin>>,
         coupling: Option<Coupling>,
         seed: Option<Given<'_>>,
         n_threads: Option<Given<'_>>,
     ) -> PyResult<Self> {
         let bodies = self::bodies(py, bodies)?;
-        let imperfection = imperfection.map(|own| own.imperfection).unwrap_or_default();
+        let variation = variation.map(|own| own.variation).unwrap_or_default();
         let n_taxels = gel.gel.n_taxels();
         let twin = twin.map(|twin| Arc::clone(&twin.twin));
         if let Some(twin) = &twin
@@ -305,14 +305,8 @@ impl SensorBatch {
         let has_twin = twin.is_some();
         let sizes = [n_sensors, n_threads];
         let batch = py.detach(|| match twin {
-            Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
-            None => Ok(twintac::SensorBatch::new(
-                &gel.gel,
-                None,
-                imperfection,
-                sizes,
-                seed,
-            )),
+            Some(twin) => twin.sensors(&gel.gel, variation, sizes, seed),
+            None => Ok(twintac::SensorBatch::new(&gel.gel, None, variation, sizes, seed)),
         });
         let batch = batch.or_raise(py)?;
         let is_coupled = coupling.is_some();
@@ -553,7 +547,7 @@ impl SensorBatch {
     fn __reduce__(&self) -> PyResult<()> {
         no_pickle(
             "SensorBatch",
-            "pickle its gel, bodies and imperfection, and make one in each process",
+            "pickle its gel, bodies and variation, and make one in each process",
         )
     }
 

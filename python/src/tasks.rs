@@ -9,7 +9,7 @@ use crate::fast::{FastGel, PROVENANCE};
 use crate::given::{Array, Given, threads};
 use crate::pickle::refused;
 use crate::pool::in_parallel;
-use crate::sensors::Imperfection;
+use crate::sensors::SensorVariation;
 use crate::shared::Shared;
 
 /// The result of a step: observations, rewards, terminated, truncated, figures; and observations
@@ -34,7 +34,7 @@ type Observed<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 /// - `n_environments`: number of environments, from 1 to as many as give ten million readings:
 ///   1,250,000 with sensors of eight taxels.
 /// - `gel`: the surrogate of the gel; PhysTac's unless given.
-/// - `imperfection`: the sensor variation from which the sensor of each episode is drawn; that of
+/// - `variation`: the sensor variation from which the sensor of each episode is drawn; that of
 ///   working sensors unless given.
 /// - `autoreset`: when an environment whose episode has ended begins the next one: in the next step
 ///   (`"NextStep"`), which ignores its action and has a reward of zero; in the same step
@@ -66,13 +66,13 @@ struct Running {
 #[pymethods]
 impl Tasks {
     #[new]
-    #[pyo3(signature = (kind, n_environments, *, gel=None, imperfection=None, autoreset="NextStep", n_threads=None))]
+    #[pyo3(signature = (kind, n_environments, *, gel=None, variation=None, autoreset="NextStep", n_threads=None))]
     fn new(
         py: Python<'_>,
         kind: &str,
         n_environments: Given<'_>,
         gel: Option<FastGel>,
-        imperfection: Option<Imperfection>,
+        variation: Option<SensorVariation>,
         autoreset: &str,
         n_threads: Option<Given<'_>>,
     ) -> PyResult<Self> {
@@ -80,14 +80,14 @@ impl Tasks {
         let autoreset = self::autoreset(py, autoreset)?;
         let n_environments = n_environments.count("n_environments", 1..=twintac::most_sensors(0))?;
         let n_threads = threads(n_threads)?;
-        let imperfection = imperfection.map_or_else(twintac::usual_imperfection, |own| own.imperfection);
+        let variation = variation.map_or_else(twintac::usual_variation, |own| own.variation);
         let sizes = [n_environments, n_threads];
         let made = py.detach(|| {
             let gel = match gel {
                 Some(gel) => gel.gel,
                 None => twintac::FastGel::phystac()?.into(),
             };
-            Ok::<_, twintac::Error>(twintac::Tasks::new(kind, &gel, &imperfection, sizes, autoreset)?)
+            Ok::<_, twintac::Error>(twintac::Tasks::new(kind, &gel, &variation, sizes, autoreset)?)
         });
         let tasks = made.or_raise(py)?;
         let (n_observed, figures) = (tasks.n_observed(), tasks.figures());
@@ -269,7 +269,7 @@ impl Tasks {
     fn __reduce__(&self) -> PyResult<()> {
         refused(
             "Tasks",
-            "make them in each process, of the same task, gel and imperfection",
+            "make them in each process, of the same task, gel and variation",
         )
     }
 

@@ -245,17 +245,17 @@ impl Prediction {
     /// Out-of-distribution (OOD) score of the contact: its distance from the training set, without
     /// unit; `[n_frames]`. `None` for a twin without intervals.
     #[getter]
-    fn unlikeness<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+    fn ood_score<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let certainty = self.prediction.certainty.as_ref()?;
-        Some(PyArray1::from_slice(py, &certainty.unlikeness))
+        Some(PyArray1::from_slice(py, &certainty.ood_score))
     }
 
     /// Whether the contact is so far out of distribution that readings and intervals cannot be
     /// trusted; `[n_frames]`. `None` for a twin without intervals.
     #[getter]
-    fn is_unlike<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<bool>>> {
+    fn is_out_of_distribution<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<bool>>> {
         let certainty = self.prediction.certainty.as_ref()?;
-        Some(PyArray1::from_slice(py, &certainty.is_unlike))
+        Some(PyArray1::from_slice(py, &certainty.is_out_of_distribution))
     }
 
     /// Draws readings with their 90 % intervals, force and depth over time with Matplotlib. The
@@ -383,8 +383,8 @@ impl TwinAtPlace {
     /// is so far out of distribution that readings and intervals cannot be trusted. `None` for a
     /// twin without intervals.
     #[getter]
-    fn unlikeness(&self, py: Python<'_>) -> PyResult<Option<(f64, bool)>> {
-        self.twin.look(py, |twin| twin.unlikeness())
+    fn ood_score(&self, py: Python<'_>) -> PyResult<Option<(f64, bool)>> {
+        self.twin.look(py, |twin| twin.ood_score())
     }
 
     /// Depth below first touch at which the table over depth ends, mm. At larger depths, its last

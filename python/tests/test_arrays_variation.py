@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from test_arrays import LIBRARIES, Library, library
 
-from twintac import Body, Error, FastGel, Imperfection, SensorBatch, Shape, Twin, arrays
+from twintac import Body, Error, FastGel, SensorBatch, SensorVariation, Shape, Twin, arrays
 from twintac.arrays._file import read_tensors
 
 N_SENSORS, N_TAXELS, DT_S = 64, 8, 0.01
@@ -32,9 +32,9 @@ def presses_mm(n_moments: int = 40) -> np.ndarray[Any, Any]:
     return position_mm
 
 
-def stepped(lib: Library, imperfection: Imperfection, key: Any, pressure_kpa: Any) -> list[Any]:
+def stepped(lib: Library, variation: SensorVariation, key: Any, pressure_kpa: Any) -> list[Any]:
     """What buses deliver, moment by moment."""
-    spread = arrays.spread(imperfection, like=lib.like)
+    spread = arrays.spread(variation, like=lib.like)
     drawn = arrays.draw(spread, key, N_TAXELS)
     bus = arrays.connected(spread, drawn)
     found = []
@@ -45,10 +45,10 @@ def stepped(lib: Library, imperfection: Imperfection, key: Any, pressure_kpa: An
 
 
 def in_rust(
-    imperfection: Imperfection | None, position_mm: np.ndarray[Any, Any], twin: Twin | None = None
+    variation: SensorVariation | None, position_mm: np.ndarray[Any, Any], twin: Twin | None = None
 ) -> list[np.ndarray[Any, Any]]:
     batch = SensorBatch(
-        FastGel.phystac(), [Body(Shape.sphere(5.0))], N_SENSORS, imperfection=imperfection, twin=twin
+        FastGel.phystac(), [Body(Shape.sphere(5.0))], N_SENSORS, variation=variation, twin=twin
     )
     upright = np.array([0.0, 0.0, 0.0, 1.0])
     found = []
@@ -59,26 +59,26 @@ def in_rust(
 
 
 @pytest.mark.parametrize(
-    "imperfection",
+    "variation",
     [
-        Imperfection(hysteresis=0.1),
-        Imperfection(quantum_kpa=0.05),
-        Imperfection(rate_hz=40.0),
-        Imperfection(cross_talk=0.1, hysteresis=0.05, rate_hz=25.0),
-        Imperfection(dead_chance=1.0),
-        Imperfection(stuck_chance=1.0),
-        Imperfection(late_chance=1.0, rate_hz=50.0),
+        SensorVariation(hysteresis=0.1),
+        SensorVariation(quantum_kpa=0.05),
+        SensorVariation(rate_hz=40.0),
+        SensorVariation(cross_talk=0.1, hysteresis=0.05, rate_hz=25.0),
+        SensorVariation(dead_chance=1.0),
+        SensorVariation(stuck_chance=1.0),
+        SensorVariation(late_chance=1.0, rate_hz=50.0),
     ],
     ids=["hysteresis", "resolution", "rate", "cross-talk", "dead", "stuck", "late"],
 )
-def test_what_is_certain_is_as_in_rust(imperfection: Imperfection, lib: Library) -> None:
+def test_what_is_certain_is_as_in_rust(variation: SensorVariation, lib: Library) -> None:
     position_mm = presses_mm()
     perfect_kpa = in_rust(None, position_mm)
-    expected = in_rust(imperfection, position_mm)
-    found = stepped(lib, imperfection, arrays.keys(0, N_SENSORS, like=lib.like), perfect_kpa)
+    expected = in_rust(variation, position_mm)
+    found = stepped(lib, variation, arrays.keys(0, N_SENSORS, like=lib.like), perfect_kpa)
     # One step of the resolution where rounding differs, in hardly any reading.
     off = np.abs(np.array(found) - np.array(expected)) > 1e-4 * np.abs(expected).max()
-    assert off.mean() < (1e-3 if imperfection.fields()["quantum_kpa"] else 1e-9)
+    assert off.mean() < (1e-3 if variation.fields()["quantum_kpa"] else 1e-9)
 
 
 def test_random_numbers_have_the_deviations_asked_for(lib: Library) -> None:
@@ -89,11 +89,11 @@ def test_random_numbers_have_the_deviations_asked_for(lib: Library) -> None:
         "offset_deviation_kpa": 0.3,
         "drift_deviation_kpa_per_k": 0.05,
     }
-    imperfection = Imperfection(
+    variation = SensorVariation(
         **asked, dead_chance=0.1, stuck_chance=0.2, late_chance=0.3, place_deviation_mm=0.2,
         height_deviation_mm=0.1, tilt_deviation_rad=0.02, turn_deviation_rad=0.05,
     )  # fmt: skip
-    spread = arrays.spread(imperfection, like=lib.like)
+    spread = arrays.spread(variation, like=lib.like)
     drawn = arrays.draw(spread, arrays.keys(3, n_sensors, like=lib.like), N_TAXELS)
     values = (drawn.gain, drawn.growth_per_kpa, drawn.offset_kpa, drawn.drift_kpa_per_k)
     for deviation, drawn_values in zip(asked.values(), values, strict=True):
@@ -114,10 +114,10 @@ def test_random_numbers_have_the_deviations_asked_for(lib: Library) -> None:
 def test_noise_and_temperature_are_as_wide_and_as_long_as_asked_for(lib: Library) -> None:
     none_kpa = np.zeros((200, N_SENSORS, N_TAXELS))
     key = arrays.keys(5, N_SENSORS, like=lib.like)
-    noise_kpa = np.array(stepped(lib, Imperfection(noise_deviation_kpa=0.05), key, none_kpa))
+    noise_kpa = np.array(stepped(lib, SensorVariation(noise_deviation_kpa=0.05), key, none_kpa))
     assert np.std(noise_kpa) == pytest.approx(0.05, rel=0.02)
     assert abs(np.corrcoef(noise_kpa[1:].ravel(), noise_kpa[:-1].ravel())[0, 1]) < 0.02
-    wandering = Imperfection(
+    wandering = SensorVariation(
         drift_kpa_per_k=1.0, temperature_deviation_k=0.5, temperature_time_s=0.1
     )
     drift_kpa = np.array(stepped(lib, wandering, key, none_kpa))[..., 0]
@@ -129,13 +129,13 @@ def test_noise_and_temperature_are_as_wide_and_as_long_as_asked_for(lib: Library
 def test_frames_jitter_about_their_rate(lib: Library) -> None:
     rising = np.arange(400.0)[:, None, None] + np.zeros((400, N_SENSORS, N_TAXELS))
     key = arrays.keys(5, N_SENSORS, like=lib.like)
-    delivered = np.array(stepped(lib, Imperfection(rate_hz=20.0, jitter=0.2), key, rising))
+    delivered = np.array(stepped(lib, SensorVariation(rate_hz=20.0, jitter=0.2), key, rising))
     n_frames = (np.diff(delivered[..., 0], axis=0) > 0.0).sum(axis=0)
     assert n_frames.mean() == pytest.approx(400 * DT_S * 20.0, rel=0.05) and np.std(n_frames) > 0.0
 
 
 def test_libraries_draw_the_same_numbers() -> None:
-    imperfection = Imperfection(gain_deviation=0.1, noise_deviation_kpa=0.05, jitter=0.1, rate_hz=30.0)
+    variation = SensorVariation(gain_deviation=0.1, noise_deviation_kpa=0.05, jitter=0.1, rate_hz=30.0)
     drawn = {}
     for name in LIBRARIES:
         try:
@@ -143,13 +143,13 @@ def test_libraries_draw_the_same_numbers() -> None:
         except pytest.skip.Exception:
             continue
         key = arrays.keys(7, N_SENSORS, like=lib.like)
-        drawn[name] = np.array(stepped(lib, imperfection, key, np.ones((20, N_SENSORS, N_TAXELS))))
+        drawn[name] = np.array(stepped(lib, variation, key, np.ones((20, N_SENSORS, N_TAXELS))))
     for delivered in drawn.values():
         assert np.allclose(delivered, drawn["numpy"], atol=2e-6)
 
 
 def test_a_sensor_depends_on_its_key_alone() -> None:
-    spread = arrays.spread(Imperfection(gain_deviation=0.1))
+    spread = arrays.spread(SensorVariation(gain_deviation=0.1))
     key = arrays.keys(1, 3, 5)
     drawn = arrays.draw(spread, key, N_TAXELS)
     alone = arrays.draw(spread, key[1, 2], N_TAXELS)
@@ -160,7 +160,7 @@ def test_a_sensor_depends_on_its_key_alone() -> None:
 
 
 def test_chosen_sensors_are_drawn_anew(lib: Library) -> None:
-    spread = arrays.spread(Imperfection(gain_deviation=0.1), like=lib.like)
+    spread = arrays.spread(SensorVariation(gain_deviation=0.1), like=lib.like)
     before = arrays.draw(spread, arrays.keys(1, 4, like=lib.like), N_TAXELS)
     other = arrays.draw(spread, arrays.keys(2, 4, like=lib.like), N_TAXELS)
     chosen = lib.xp.asarray(np.array([True, False, True, False]))
@@ -170,7 +170,7 @@ def test_chosen_sensors_are_drawn_anew(lib: Library) -> None:
 
 
 def test_installed_elsewhere_a_sensor_reads_what_is_there() -> None:
-    spread = arrays.spread(Imperfection(place_deviation_mm=1.0, turn_deviation_rad=0.3))
+    spread = arrays.spread(SensorVariation(place_deviation_mm=1.0, turn_deviation_rad=0.3))
     drawn = arrays.draw(spread, arrays.keys(1, 2), N_TAXELS)
     position_mm = np.array([[[1.0, 2.0, 7.0]]] * 2)
     upright = np.eye(3)[None, None] * np.ones((2, 1, 1, 1))
@@ -185,7 +185,7 @@ def test_installed_elsewhere_a_sensor_reads_what_is_there() -> None:
 
 
 def test_a_stiffer_gel_has_larger_pressures_and_forces_by_the_same_factor() -> None:
-    spread = arrays.spread(Imperfection(modulus_deviation=0.4))
+    spread = arrays.spread(SensorVariation(modulus_deviation=0.4))
     drawn = arrays.draw(spread, arrays.keys(1, 2000), N_TAXELS)
     modulus = np.asarray(drawn.modulus)
     assert modulus.shape == (2000,) and np.std(np.log(modulus)) == pytest.approx(0.4, rel=0.05)
@@ -259,7 +259,7 @@ def test_a_history_keeps_the_last_frames(lib: Library) -> None:
 
 
 def test_what_cannot_be_is_refused_by_name(trained: Path, tmp_path: Path) -> None:
-    spread = arrays.spread(Imperfection())
+    spread = arrays.spread(SensorVariation())
     key = arrays.keys(0, 2)
     calls: dict[str, Callable[[], Any]] = {
         "seed": lambda: arrays.keys(-1, 2),

@@ -136,10 +136,10 @@ def test_stable_baselines_finds_nothing_wrong_and_learns() -> None:
 
 
 def test_the_usual_variation_is_that_of_the_tasks() -> None:
-    def first(imperfection: twintac.Imperfection | None) -> Any:
-        tasks = twintac.Tasks("ExploreShape", 20, imperfection=imperfection)
+    def first(variation: twintac.SensorVariation | None) -> Any:
+        tasks = twintac.Tasks("ExploreShape", 20, variation=variation)
         tasks.reset()
         return tasks.step(np.zeros((20, 8), np.float32))[0]
 
-    assert np.array_equal(first(twintac.Imperfection.usual()), first(None))
-    assert not np.array_equal(first(twintac.Imperfection()), first(None))
+    assert np.array_equal(first(twintac.SensorVariation.usual()), first(None))
+    assert not np.array_equal(first(twintac.SensorVariation()), first(None))

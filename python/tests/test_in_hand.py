@@ -16,7 +16,7 @@ pytest.importorskip("mujoco.batch", reason="MuJoCo 4 or later is not installed")
 import mujoco
 
 import twintac.gymnasium  # registers the tasks
-from twintac import Error, FastGel, Imperfection
+from twintac import Error, FastGel, SensorVariation
 from twintac.gymnasium._hand import PALM_RADIUS_M, Thing, draw_thing, hand
 from twintac.gymnasium._in_hand import N_STEPS, InHandTurn
 from twintac.gymnasium.policies import scripted_policy, seeing_policy
@@ -68,7 +68,7 @@ def test_one_of_many_is_as_alone_also_in_later_episodes() -> None:
 
 
 def test_the_script_turns_cylinders_and_knows_nothing_of_boxes() -> None:
-    figures, dropped = played(InHandTurn(48, imperfection=Imperfection(), autoreset="Disabled"), FIRST_SEED)
+    figures, dropped = played(InHandTurn(48, variation=SensorVariation(), autoreset="Disabled"), FIRST_SEED)
     error_deg, is_box = np.degrees(figures[:, 0]), figures[:, 4] > 0
     assert not dropped.any()
     assert 12 < is_box.sum() < 36
@@ -77,7 +77,7 @@ def test_the_script_turns_cylinders_and_knows_nothing_of_boxes() -> None:
 
 
 def test_an_open_hand_measures_nothing_and_a_closed_one_its_grip() -> None:
-    tasks = InHandTurn(2, imperfection=Imperfection(), autoreset="Disabled")
+    tasks = InHandTurn(2, variation=SensorVariation(), autoreset="Disabled")
     tasks.seed([1, 2])
     tasks.reset()
     open_hand = np.tile([0.0, -1.0], 4)

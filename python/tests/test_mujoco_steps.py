@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from blocks import BLOCK, Scene, palm
-from twintac import FastGel, Imperfection, Sensor
+from twintac import FastGel, Sensor, SensorVariation
 from twintac.mujoco import TouchSensors, add_sensor
 
 WEIGHT_N = -0.981
@@ -193,8 +193,8 @@ def test_a_whole_state_without_the_sensors_is_refused_until_it_is_clean() -> Non
 
 @pytest.mark.parametrize("spec", [INTEGRATION, mujoco.mjtState.mjSTATE_FULLPHYSICS])
 def test_a_state_in_the_middle_of_a_contact_is_replayed_to_the_same_bits(spec: mujoco.mjtState) -> None:
-    noisy = Imperfection(noise_deviation_kpa=0.05, hysteresis=0.05, rate_hz=60.0, jitter=0.1)
-    scene = Scene(palm(BLOCK.replace('pos="0.001 0 0.019"', 'pos="0.001 0 0.022" euler="3 5 0"')), imperfection=noisy)
+    noisy = SensorVariation(noise_deviation_kpa=0.05, hysteresis=0.05, rate_hz=60.0, jitter=0.1)
+    scene = Scene(palm(BLOCK.replace('pos="0.001 0 0.019"', 'pos="0.001 0 0.022" euler="3 5 0"')), variation=noisy)
     scene.step(60)
     assert scene.force_n < -0.2 and abs(scene.data.qvel[2]) > 1e-3
     state, touch = np.empty(mujoco.mj_stateSize(scene.model, spec)), scene.touch.state()
@@ -220,7 +220,7 @@ def test_reset_leaves_nothing() -> None:
 
 
 def test_slip_and_readings_without_variation_belong_to_the_state() -> None:
-    scene = Scene(palm(), friction=0.2, imperfection=Imperfection(gain_deviation=0.2))
+    scene = Scene(palm(), friction=0.2, variation=SensorVariation(gain_deviation=0.2))
     scene.step(300)
     assert not scene.touch.slip_mm_per_s.any()
     truth_kpa = scene.touch.read_ground_truth()
@@ -387,7 +387,7 @@ def test_worlds_that_do_not_go_on_together_are_refused() -> None:
 
 
 def test_sensors_that_are_replaced_are_drawn_anew_and_those_of_a_number_are_the_same() -> None:
-    scene = Scene(palm(), imperfection=Imperfection(gain_deviation=0.2))
+    scene = Scene(palm(), variation=SensorVariation(gain_deviation=0.2))
 
     def readings_kpa(number: int) -> list[float]:
         mujoco.mj_resetData(scene.model, scene.data)

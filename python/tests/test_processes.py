@@ -27,7 +27,7 @@ from twintac import (
     FastGel,
     Friction,
     Gel,
-    Imperfection,
+    SensorVariation,
     Inverse,
     Pose,
     Press,
@@ -146,7 +146,7 @@ def test_a_reader_is_read_by_the_process_that_opened_it() -> None:
 
 def figures(value: object) -> object:
     """All numbers of an object, as texts with every bit."""
-    if isinstance(value, Sensor | Shape | Body | Imperfection | Gel | FastGel | Run | Coupling):
+    if isinstance(value, Sensor | Shape | Body | SensorVariation | Gel | FastGel | Run | Coupling):
         return repr(value)
     names = [name for name in dir(value) if not name.startswith("_")]
     members = {name: getattr(value, name) for name in names}
@@ -173,7 +173,7 @@ def test_values_are_the_same_after_a_pickle(gel: Gel, followed: twintac.Followed
         sensor,
         union,
         Body(union),
-        Imperfection(gain_deviation=1 / 3),
+        SensorVariation(gain_deviation=1 / 3),
         Coupling(sensor, friction=0.5, retardation_s=0.01),
         PressPath("sphere-25", [0.0, 1.0], [[0.0, 0.0, 8.0], [0.0, 0.0, 7.9]], force_n=[np.nan, 1.0]),
         table,

@@ -18,7 +18,7 @@ from twintac import (
     FastGel,
     Friction,
     Gel,
-    Imperfection,
+    SensorVariation,
     Inverse,
     Pose,
     Press,
@@ -231,7 +231,7 @@ def test_poses_and_places_are_any_few_numbers() -> None:
 
 
 def test_settings_may_be_of_numpy() -> None:
-    assert Imperfection(gain_deviation=np.float32(0.25)) == Imperfection(gain_deviation=0.25)
+    assert SensorVariation(gain_deviation=np.float32(0.25)) == SensorVariation(gain_deviation=0.25)
     gel, shapes = FastGel.phystac(), {"ball": Shape.sphere(5.0)}
     readings_kpa = gel.reader().read([(Body(shapes["ball"]), Pose((1.0, 0.0, 6.5)))])[0]
     own = Inverse(gel, shapes, noise_kpa=np.float32(0.25), n_steps=np.int64(2)).start("simulated").update(0.1, readings_kpa)
@@ -264,8 +264,8 @@ def test_sensors_are_imperfect_by_their_seed_alone() -> None:
     places = np.tile([0.0, 0.0, 7.5], (6, 1))
 
     def readings_kpa(seed: int, n_threads: int, **fields: float) -> npt.NDArray[np.float32]:
-        imperfection = Imperfection(**fields)
-        batch = SensorBatch(gel, [ball], 6, imperfection=imperfection, seed=seed, n_threads=n_threads)
+        variation = SensorVariation(**fields)
+        batch = SensorBatch(gel, [ball], 6, variation=variation, seed=seed, n_threads=n_threads)
         return [batch.step(0.01, places)[0] for _ in range(3)][-1]
 
     own = readings_kpa(1, 1, gain_deviation=0.1, noise_deviation_kpa=0.1)
@@ -289,8 +289,8 @@ def test_one_body_twice_is_two_things() -> None:
 
 
 def test_a_sensor_goes_on_from_its_state() -> None:
-    noisy, ball = Imperfection(noise_deviation_kpa=0.1, hysteresis=0.1), Body(Shape.sphere(6.0))
-    sensors = SensorBatch(FastGel.phystac(), [ball], 2, imperfection=noisy, coupling=Coupling(Sensor.phystac(), friction=0.8, retardation_s=0.005))
+    noisy, ball = SensorVariation(noise_deviation_kpa=0.1, hysteresis=0.1), Body(Shape.sphere(6.0))
+    sensors = SensorBatch(FastGel.phystac(), [ball], 2, variation=noisy, coupling=Coupling(Sensor.phystac(), friction=0.8, retardation_s=0.005))
 
     def steps() -> npt.NDArray[np.float32]:
         return np.array([sensors.step(0.01, np.tile([0.1 * n, 0.0, 7.5], (2, 1)), touch_id=[4, 4])[0] for n in range(5)])

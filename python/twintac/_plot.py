@@ -55,8 +55,8 @@ def prediction(result: Prediction, axes: Sequence[Axes] | None) -> list[Axes]:
         for line, centre, half in zip(drawn, result.readings_kpa.T, half_width_kpa.T, strict=True):
             readings.fill_between(result.time_s, centre - half, centre + half, alpha=0.2, color=line.get_color(), linewidth=0)
     doubtful = ~result.simulated
-    if result.is_unlike is not None:
-        doubtful = doubtful | result.is_unlike
+    if result.is_out_of_distribution is not None:
+        doubtful = doubtful | result.is_out_of_distribution
     if doubtful.any():
         low, high = readings.get_ylim()
         readings.fill_between(result.time_s, low, high, where=doubtful, color="0.9", zorder=0, label="not to be trusted")

@@ -24,7 +24,6 @@ __all__ = [
     "Friction",
     "Gel",
     "GelState",
-    "Imperfection",
     "Inverse",
     "Pose",
     "Prediction",
@@ -40,6 +39,7 @@ __all__ = [
     "Sensor",
     "SensorBatch",
     "SensorState",
+    "SensorVariation",
     "Shape",
     "Tasks",
     "Tracker",
@@ -119,7 +119,7 @@ class Press:
     - `at_mm`: location of the indenter's origin in the gel's plane, x and y, mm; the middle of the
       gel unless given.
     - `depth_mm`: depth below first touch, mm, above 0.
-    - `spin_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
+    - `yaw_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
     - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
     - `hold_s`: time at full depth, s, at most an hour.
 
@@ -132,7 +132,7 @@ class Press:
         *,
         at_mm: _Floats = (0.0, 0.0),
         depth_mm: float = 1.0,
-        spin_rad: float = 0.0,
+        yaw_rad: float = 0.0,
         speed_mm_per_s: float = 2.0,
         hold_s: float = 0.0,
     ) -> Press: ...
@@ -146,7 +146,7 @@ class Press:
     def depth_mm(self) -> float:
         """Depth below first touch, mm."""
     @property
-    def spin_rad(self) -> float:
+    def yaw_rad(self) -> float:
         """Yaw (rotation of the indenter about the axis of the press), radians."""
     @property
     def speed_mm_per_s(self) -> float:
@@ -729,7 +729,7 @@ class Dataset:
       or the path of a file. Without it, the gel is computed with finite elements.
     - `twin`: folder of the twin that computes the readings; unless given, readings are the
       pressures at the ports.
-    - `imperfection`: path of the sensor variation (TOML), from which each press gets an imperfect
+    - `variation`: path of the sensor variation (TOML), from which each press gets an imperfect
       sensor of its own. It needs `fast`.
     - `settings`: path of a file (TOML) that may have a table `[simulate]` with settings of the
       simulation; not together with `twin`.
@@ -747,7 +747,7 @@ class Dataset:
         seed: _Count = 1,
         fast: bool | _Path = ...,
         twin: _Path | None = None,
-        imperfection: _Path | None = None,
+        variation: _Path | None = None,
         settings: _Path | None = None,
     ) -> Dataset: ...
     @property
@@ -899,12 +899,12 @@ class Prediction:
         a twin without intervals.
         """
     @property
-    def unlikeness(self) -> _Float | None:
+    def ood_score(self) -> _Float | None:
         """Out-of-distribution (OOD) score of the contact: its distance from the training set, without
         unit; `[n_frames]`. `None` for a twin without intervals.
         """
     @property
-    def is_unlike(self) -> _Bool | None:
+    def is_out_of_distribution(self) -> _Bool | None:
         """Whether the contact is so far out of distribution that readings and intervals cannot be
         trusted; `[n_frames]`. `None` for a twin without intervals.
         """
@@ -945,7 +945,7 @@ class TwinAtPlace:
         twin without intervals.
         """
     @property
-    def unlikeness(self) -> tuple[float, bool] | None:
+    def ood_score(self) -> tuple[float, bool] | None:
         """Out-of-distribution (OOD) score of the last contact, without unit, and whether the contact
         is so far out of distribution that readings and intervals cannot be trusted. `None` for a
         twin without intervals.
@@ -1263,7 +1263,7 @@ class FastReader:
         Returns the pressure at each port, kPa, `[n_taxels]`, and the wrench, `[6]`: force on the
         gel, N, and torque about the centre of the gel's top, N mm.
         """
-    def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
+    def ood_score(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
         """The out-of-distribution (OOD) score of a contact, without unit. It is 0 if nothing is near
         the gel. Above 1, readings and force may be wrong: the shape is unlike those of the training
         set, the contact is deeper than the training presses, or too few training presses were
@@ -1324,12 +1324,12 @@ class FastBatch:
         """
 
 @final
-class Imperfection:
+class SensorVariation:
     """Sensor variation: the distributions from which each sensor's deviations from a perfect sensor
     are drawn.
 
-    Keywords are the fields of the table `[imperfection]` in a file. Each is 0 unless given;
-    `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of a normal
+    Keywords are the fields of the table `[variation]` in a file. Each is 0 unless given;
+    `SensorVariation()` is a perfect sensor. A *deviation* is the standard deviation of a normal
     distribution about zero.
 
     - `gain_deviation`: deviation of each taxel's gain, as a fraction of the gain.
@@ -1359,17 +1359,17 @@ class Imperfection:
 
     Raises `Error` for a value that is not allowed; its `field` names the keyword.
     """
-    def __new__(cls, **fields: _Number) -> Imperfection: ...
+    def __new__(cls, **fields: _Number) -> SensorVariation: ...
     @staticmethod
-    def load(path: _Path) -> Imperfection:
-        """Reads a file (TOML) with the table `[imperfection]`. `twintac fast imperfection` makes such
+    def load(path: _Path) -> SensorVariation:
+        """Reads a file (TOML) with the table `[variation]`. `twintac fast variation` makes such
         files.
 
         Raises `Error` with file, line and field if the file is wrong, and with the file if it
         cannot be read.
         """
     @staticmethod
-    def usual() -> Imperfection:
+    def usual() -> SensorVariation:
         """The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`.
         Gains, noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
         hysteresis, installation and faults are assumed.
@@ -1402,7 +1402,7 @@ class SensorBatch:
     - `bodies`: the bodies that may touch them, at least one.
     - `n_sensors`: number of sensors, from 1 to as many as give ten million readings: 1,250,000
       sensors of eight taxels.
-    - `imperfection`: the sensor variation from which each sensor's deviations are drawn; perfect
+    - `variation`: the sensor variation from which each sensor's deviations are drawn; perfect
       sensors unless given.
     - `twin`: the twin whose barometers they have, with its gains and viscoelastic relaxation;
       readings are the pressures at the ports unless given.
@@ -1421,7 +1421,7 @@ class SensorBatch:
         bodies: Sequence[Body],
         n_sensors: _Count,
         *,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         twin: Twin | None = None,
         coupling: Coupling | None = None,
         seed: _Count = 0,
@@ -1532,7 +1532,7 @@ class Tasks:
     - `n_environments`: number of environments, from 1 to as many as give ten million readings:
       1,250,000 with sensors of eight taxels.
     - `gel`: the surrogate of the gel; PhysTac's unless given.
-    - `imperfection`: the sensor variation from which the sensor of each episode is drawn; that of
+    - `variation`: the sensor variation from which the sensor of each episode is drawn; that of
       working sensors unless given.
     - `autoreset`: when an environment whose episode has ended begins the next one: in the next step
       (`"NextStep"`), which ignores its action and has a reward of zero; in the same step
@@ -1549,7 +1549,7 @@ class Tasks:
         n_environments: _Count,
         *,
         gel: FastGel | None = None,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         autoreset: Literal["NextStep", "SameStep", "Disabled"] = "NextStep",
         n_threads: _Count | None = None,
     ) -> Tasks: ...
@@ -1628,7 +1628,7 @@ class Inverse:
     - `correlated_s`: time within which errors of the model count as one, s; 0.1.
     - `touch_deviations`: there is a contact if at least one reading is this many standard
       deviations of the noise above zero; 6.
-    - `place_walk_mm`, `depth_walk_mm`, `spin_walk_rad`: standard deviation of the random motion of
+    - `place_walk_mm`, `depth_walk_mm`, `yaw_walk_rad`: standard deviation of the random motion of
       a contact in one second: location, 3 mm, depth, 2 mm, and yaw, 1 radian.
     - `shape_memory_s`: time after which evidence for a shape is reduced to 1/e, s; 3.
     - `n_starts`, `n_steps`: number of possible presses of each shape that are followed at once, 3,
@@ -1782,7 +1782,7 @@ class Contact:
     def depth_mm(self) -> float:
         """Depth below first touch, mm."""
     @property
-    def spin_rad(self) -> float:
+    def yaw_rad(self) -> float:
         """Yaw (rotation about the vertical axis), radians, modulo the symmetry of the shape; 0 for a
         round shape.
         """
@@ -1796,7 +1796,7 @@ class Contact:
     def depth_deviation_mm(self) -> float:
         """Standard deviation of the depth, mm."""
     @property
-    def spin_deviation_rad(self) -> float:
+    def yaw_deviation_rad(self) -> float:
         """Standard deviation of the yaw, radians; 0 for a round shape."""
     @property
     def force_deviation_n(self) -> float:

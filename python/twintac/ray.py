@@ -21,7 +21,7 @@ from twintac._twintac import Dataset
 
 __all__ = ["make_dataset", "make_shard"]
 
-_PATHS = ("sensor", "protocol", "fast", "twin", "imperfection", "settings")
+_PATHS = ("sensor", "protocol", "fast", "twin", "variation", "settings")
 _CHUNK = 1 << 20
 
 

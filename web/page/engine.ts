@@ -77,7 +77,7 @@ export interface Frame {
   iterations?: number;
   residual?: number;
   /** Out-of-distribution score of a surrogate: above 1, the numbers may be wrong. */
-  novelty?: number;
+  ood_score?: number;
   provenance: string;
   /** Time that the engine took, ms. */
   took_ms: number;

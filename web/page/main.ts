@@ -202,7 +202,7 @@ class Page {
   private showSolver(): void {
     const isSurrogate = this.press.surrogate !== undefined;
     element<HTMLSelectElement>("solver").value = isSurrogate ? "surrogate" : "elements";
-    for (const id of ["leave", "clear", "novelty"]) element(id).hidden = !isSurrogate;
+    for (const id of ["leave", "clear", "ood_score"]) element(id).hidden = !isSurrogate;
     element("contact").parentElement!.hidden = isSurrogate;
     // Nothing is known of the stress in the gel.
     element("cut").hidden = isSurrogate;
@@ -519,10 +519,10 @@ class Page {
     element("aside").textContent = `${clean(Math.hypot(x, y), 3)} N`;
     element("depth").textContent = `${clean(frame.depth_mm, 2)} mm`;
     element("contact").textContent = `${clean(frame.contact_mm2 ?? 0, 0)} mm²`;
-    if (frame.novelty !== undefined) {
-      const isUnlike = frame.novelty > 1;
-      element("novelty").textContent = `Out-of-distribution score ${frame.novelty.toFixed(2)}${isUnlike ? ": above 1, the numbers may be wrong" : ""}`;
-      element("novelty").classList.toggle("fault", isUnlike);
+    if (frame.ood_score !== undefined) {
+      const isOutOfDistribution = frame.ood_score > 1;
+      element("ood_score").textContent = `Out-of-distribution score ${frame.ood_score.toFixed(2)}${isOutOfDistribution ? ": above 1, the numbers may be wrong" : ""}`;
+      element("ood_score").classList.toggle("fault", isOutOfDistribution);
     }
     element("torque").textContent = `${clean(Math.hypot(...frame.torque_n_mm), 2)} N mm`;
     element("provenance").textContent = frame.provenance;

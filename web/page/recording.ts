@@ -14,7 +14,7 @@ export class Recording {
   ) {
     const forces = ["force_x_n", "force_y_n", "force_z_n", "torque_x_n_mm", "torque_y_n_mm", "torque_z_n_mm", "contact_mm2"];
     const taxels = sensor.taxels.map(({ name }) => `${name}_kpa`);
-    this.columns = ["time_s", "indenter", ...FIELDS, ...forces, ...taxels, "converged", "novelty", "n_shapes", "provenance"].join(",");
+    this.columns = ["time_s", "indenter", ...FIELDS, ...forces, ...taxels, "converged", "ood_score", "n_shapes", "provenance"].join(",");
   }
 
   get n_frames(): number {
@@ -31,8 +31,8 @@ export class Recording {
       ...frame.pressure_kpa,
     ].map((number) => (number === undefined ? "" : String(Number(number.toPrecision(7)))));
     const time_s = ((performance.now() - this.started) / 1000).toFixed(4);
-    const { converged = "", novelty = "", provenance } = frame;
-    this.rows.push([time_s, this.indenter, ...numbers, converged, novelty, n_shapes, provenance].join(","));
+    const { converged = "", ood_score = "", provenance } = frame;
+    this.rows.push([time_s, this.indenter, ...numbers, converged, ood_score, n_shapes, provenance].join(","));
   }
 
   get csv(): string {

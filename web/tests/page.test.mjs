@@ -321,7 +321,7 @@ test("a surrogate takes several shapes, and a link restores them", async () => {
   await aim(page, { x_mm: -8, y_mm: 0, depth_mm: 1 });
   const one = await state(page);
   assert.equal(one.surrogate, "phystac.safetensors");
-  assert.ok(one.frame.novelty > 0 && one.frame.novelty < 1, String(one.frame.novelty));
+  assert.ok(one.frame.ood_score > 0 && one.frame.ood_score < 1, String(one.frame.ood_score));
   assert.ok(await page.isHidden("#cut"));
   assert.ok(await page.isDisabled("#clear"));
   await page.click("#leave");

@@ -21,7 +21,7 @@ from stable_baselines3 import PPO  # type: ignore[import-not-found, unused-ignor
 from stable_baselines3.common.callbacks import BaseCallback  # type: ignore[import-not-found, unused-ignore]
 from stable_baselines3.common.vec_env import VecNormalize  # type: ignore[import-not-found, unused-ignore]
 
-from twintac import Imperfection, Tasks
+from twintac import SensorVariation, Tasks
 from twintac.gymnasium.policies import Policy, random_policy, returns, scripted_policy
 from twintac.gymnasium.sb3 import TouchVecEnv
 
@@ -96,12 +96,12 @@ class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
         return True
 
 
-def train(kind: str, seed: int, imperfection: Imperfection | None, steps: int | None) -> tuple[PPO, Curve]:
+def train(kind: str, seed: int, variation: SensorVariation | None, steps: int | None) -> tuple[PPO, Curve]:
     """Trains with proximal policy optimization (PPO), with two layers of 128 units."""
     own = dict(SETTINGS[kind])
     n_envs, total = own.pop("n_envs"), steps or own["steps"]
     del own["steps"]
-    env = VecNormalize(TouchVecEnv(kind, n_envs, imperfection=imperfection, seed=1000 * seed), gamma=own["gamma"])
+    env = VecNormalize(TouchVecEnv(kind, n_envs, variation=variation, seed=1000 * seed), gamma=own["gamma"])
     model = PPO(
         "MlpPolicy",
         env,
@@ -170,7 +170,7 @@ def main() -> None:
     others = {"script": mean_and_error(script), "chance": mean_and_error(judge(kind, random_policy(kind)))}
     for policy, (mean, error) in others.items():
         print(f"{policy}: {mean:.2f} ± {error:.2f} {UNIT[kind]}, simulated", flush=True)
-    model, curve = train(kind, given.seed, Imperfection() if given.perfect else None, given.steps)
+    model, curve = train(kind, given.seed, SensorVariation() if given.perfect else None, given.steps)
     better = mean_and_error(curve.returns - script)
     print(f"better than the script in the same episodes by {better[0]:.2f} ± {better[1]:.2f} {UNIT[kind]}, simulated")
     name = f"{kind}{'-perfect' if given.perfect else ''}-{given.seed}"

@@ -1,5 +1,5 @@
 """Sensor variation as arrays: sensors that differ from a perfect one, each in its own way, and what
-they deliver. This is what Rust's `SensorBatch` does with an `Imperfection`; the random numbers are
+they deliver. This is what Rust's `SensorBatch` does with an `SensorVariation`; the random numbers are
 others, drawn from keys (`keys`).
 """
 
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import Imperfection
+from .. import SensorVariation
 from ._convert import convert
 from ._namespace import Array, namespace, refuse, root
 from ._random import normal, uniform
@@ -27,7 +27,7 @@ _AT_BIRTH = -1
 
 
 class Spread(NamedTuple):
-    """The distributions that sensors are drawn from, as arrays: the fields of `Imperfection`, `[]`."""
+    """The distributions that sensors are drawn from, as arrays: the fields of `SensorVariation`, `[]`."""
 
     gain_deviation: Array
     growth_deviation_per_kpa: Array
@@ -96,9 +96,9 @@ class Bus(NamedTuple):
     """`[..., n_taxels]`: a stuck taxel keeps its first reading for good."""
 
 
-def spread(imperfection: Imperfection, *, like: Array | None = None) -> Spread:
+def spread(variation: SensorVariation, *, like: Array | None = None) -> Spread:
     """The sensor variation as arrays: of NumPy, or as the array `like`."""
-    fields = {name: np.array(value) for name, value in imperfection.fields().items()}
+    fields = {name: np.array(value) for name, value in variation.fields().items()}
     return convert(Spread(**fields), np.zeros(0, np.float32) if like is None else like)
 
 

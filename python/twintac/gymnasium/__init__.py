@@ -6,8 +6,8 @@ Importing this module registers `TwinTac/ExploreShape-v0`, `TwinTac/HoldForce-v0
 
 Keywords of all environments; vector environments also take `autoreset_mode` and `n_threads`:
 
-- `imperfection`: the sensor variation from which the sensor of each episode is drawn. The default
-  is the variation of a working sensor; `twintac.Imperfection()` gives perfect sensors.
+- `variation`: the sensor variation from which the sensor of each episode is drawn. The default
+  is the variation of a working sensor; `twintac.SensorVariation()` gives perfect sensors.
 - `gel`: a `twintac.FastGel`; that of the task's sensor unless given: phystac-tip's for InHandTurn,
   PhysTac's for the others.
 - `touch`: for InHandTurn only, see there.

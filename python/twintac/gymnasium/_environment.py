@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from twintac import FastGel, Imperfection
+from twintac import FastGel, SensorVariation
 from twintac.gymnasium._spaces import FRAMES_PER_S, Single, make_tasks, spaces
 
 
@@ -20,7 +20,7 @@ class TouchEnv(gym.Env[Single, Single]):
     Args:
         kind: `"ExploreShape"`, `"HoldForce"`, `"FollowEdge"` or `"InHandTurn"`. `twintac.gymnasium`
             describes their observations, actions and rewards.
-        imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
+        variation: the sensor variation from which the sensor of each episode is drawn; that of a
             working sensor unless given.
         gel: the surrogate of the gel; that of the task's sensor unless given.
         touch: for InHandTurn: what is measured besides the joints, `"taxels"`, the reading of each
@@ -41,12 +41,12 @@ class TouchEnv(gym.Env[Single, Single]):
         self,
         kind: str,
         *,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         gel: FastGel | None = None,
         touch: str | None = None,
         render_mode: str | None = None,
     ) -> None:
-        self._tasks = make_tasks(kind, 1, gel=gel, imperfection=imperfection, touch=touch, autoreset="Disabled", n_threads=1)
+        self._tasks = make_tasks(kind, 1, gel=gel, variation=variation, touch=touch, autoreset="Disabled", n_threads=1)
         self._figures = self._tasks.figures
         self.observation_space, self.action_space = spaces(self._tasks)
         self.metadata = {**self.metadata, "render_fps": FRAMES_PER_S[kind]}

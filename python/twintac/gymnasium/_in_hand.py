@@ -16,7 +16,7 @@ if importlib.util.find_spec("mujoco") is None or importlib.util.find_spec("mujoc
 import mujoco
 import mujoco.batch
 
-from twintac import Error, FastGel, Imperfection, Sensor
+from twintac import Error, FastGel, Sensor, SensorVariation
 from twintac.gymnasium._hand import CLOSE_RAD, N_FINGERS, PALM_RADIUS_M, SWING_RAD, TIMESTEP_S, TIPS, Thing, draw_thing, hand
 from twintac.mujoco import TouchSensors
 
@@ -62,7 +62,7 @@ class InHandTurn:
         n_environments: int,
         *,
         gel: FastGel | None = None,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         touch: str = "taxels",
         autoreset: str = "NextStep",
         n_threads: int | None = None,
@@ -87,7 +87,7 @@ class InHandTurn:
             n_worlds=self._n,
             n_threads=n_threads,
             friction=_FRICTION,
-            imperfection=Imperfection.usual() if imperfection is None else imperfection,
+            variation=SensorVariation.usual() if variation is None else variation,
         )
         self._object = int(self._model.geom("object").id), int(self._model.body("object").id)
         self._random = [np.random.default_rng(number) for number in range(self._n)]

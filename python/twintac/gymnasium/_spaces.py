@@ -11,7 +11,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     import gymnasium as gym
 
-    from twintac import FastGel, Imperfection, Tasks
+    from twintac import FastGel, SensorVariation, Tasks
     from twintac.gymnasium._in_hand import InHandTurn
 
 KINDS = ("ExploreShape", "HoldForce", "FollowEdge", "InHandTurn")
@@ -35,7 +35,7 @@ def make_tasks(
     n_environments: int,
     *,
     gel: FastGel | None = None,
-    imperfection: Imperfection | None = None,
+    variation: SensorVariation | None = None,
     touch: str | None = None,
     autoreset: Literal["NextStep", "SameStep", "Disabled"] = "NextStep",
     n_threads: int | None = None,
@@ -47,11 +47,11 @@ def make_tasks(
         from twintac.gymnasium._in_hand import InHandTurn
 
         return InHandTurn(
-            n_environments, gel=gel, imperfection=imperfection, touch="taxels" if touch is None else touch, autoreset=autoreset, n_threads=n_threads
+            n_environments, gel=gel, variation=variation, touch="taxels" if touch is None else touch, autoreset=autoreset, n_threads=n_threads
         )
     if touch is not None:
         raise Error(f"`touch` is for InHandTurn, not for {kind}")
-    return Tasks(kind, n_environments, gel=gel, imperfection=imperfection, autoreset=autoreset, n_threads=n_threads)
+    return Tasks(kind, n_environments, gel=gel, variation=variation, autoreset=autoreset, n_threads=n_threads)
 
 
 def spaces(tasks: Tasks | InHandTurn) -> tuple[gym.Space[Single], gym.Space[Single]]:

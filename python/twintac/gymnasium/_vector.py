@@ -12,7 +12,7 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from twintac import FastGel, Imperfection
+from twintac import FastGel, SensorVariation
 from twintac.gymnasium._spaces import FRAMES_PER_S, Single, make_tasks, spaces
 
 _Bool = npt.NDArray[np.bool_]
@@ -26,7 +26,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         kind: `"ExploreShape"`, `"HoldForce"`, `"FollowEdge"` or `"InHandTurn"`. `twintac.gymnasium`
             describes their observations, actions and rewards.
         num_envs: number of environments.
-        imperfection: the sensor variation from which the sensor of each episode is drawn; that of a
+        variation: the sensor variation from which the sensor of each episode is drawn; that of a
             working sensor unless given.
         gel: the surrogate of the gel; that of the task's sensor unless given.
         touch: for InHandTurn: what is measured besides the joints, `"taxels"`, the reading of each
@@ -56,7 +56,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         kind: str,
         num_envs: int = 1,
         *,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         gel: FastGel | None = None,
         touch: str | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
@@ -68,7 +68,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
             kind,
             num_envs,
             gel=gel,
-            imperfection=imperfection,
+            variation=variation,
             touch=touch,
             autoreset=mode.value,
             n_threads=n_threads,

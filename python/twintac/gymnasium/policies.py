@@ -92,15 +92,15 @@ def returns(policy: Policy, tasks: Tasks) -> _Double:
 
 
 def _contacts(
-    shapes: list[Shape], number: _Integers, place_mm: _Double, spin_rad: _Double, depth_mm: _Double
+    shapes: list[Shape], number: _Integers, place_mm: _Double, yaw_rad: _Double, depth_mm: _Double
 ) -> tuple[Single, Single]:
     """The readings of perfect sensors, kPa, and the force, N, under shapes at given locations, yaws
     and depths.
     """
     batch = FastGel.phystac().batch([Body(shape) for shape in shapes])
-    zero = np.zeros_like(spin_rad)
+    zero = np.zeros_like(yaw_rad)
     pose = np.stack(
-        [*place_mm.T, _HEIGHT_MM - depth_mm, zero, zero, np.sin(0.5 * spin_rad), np.cos(0.5 * spin_rad)], axis=1
+        [*place_mm.T, _HEIGHT_MM - depth_mm, zero, zero, np.sin(0.5 * yaw_rad), np.cos(0.5 * yaw_rad)], axis=1
     )
     readings_kpa, wrench = batch.read(pose, body=number)
     return readings_kpa, -wrench[:, 2]
@@ -114,8 +114,8 @@ def _hold_force(random: np.random.Generator) -> Policy:
     balls = [Shape.sphere(radius_mm) for radius_mm in (8.0, 10.0, 12.5)]
     shapes = [*balls, Shape.cylinder(5.0, 10.0, 0.8), Shape.box((10.0, 10.0, 10.0), 0.8)]
     place_mm = random.uniform(-1.0, 1.0, (n, 2)) * (8.0, 3.0)
-    spin_rad, depth_mm = random.uniform(-np.pi, np.pi, n), random.uniform(0.0, 3.5, n)
-    readings_kpa, force_n = _contacts(shapes, random.integers(len(shapes), size=n), place_mm, spin_rad, depth_mm)
+    yaw_rad, depth_mm = random.uniform(-np.pi, np.pi, n), random.uniform(0.0, 3.5, n)
+    readings_kpa, force_n = _contacts(shapes, random.integers(len(shapes), size=n), place_mm, yaw_rad, depth_mm)
     weights, *_ = np.linalg.lstsq(readings_kpa[force_n < 3.5], force_n[force_n < 3.5], rcond=None)
     speed_per_n = 3.0  # the best of 0.5, 0.8, 1.2, 1.6, 2 and 3
 

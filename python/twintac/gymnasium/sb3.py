@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from stable_baselines3.common.vec_env import VecEnv  # type: ignore[import-not-found, unused-ignore]
 
-from twintac import FastGel, Imperfection
+from twintac import FastGel, SensorVariation
 from twintac.gymnasium._spaces import Single, make_tasks, spaces
 
 
@@ -24,7 +24,7 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     Args:
         kind: as in `twintac.gymnasium.TouchVectorEnv`.
         num_envs: number of environments.
-        imperfection: as in `TouchVectorEnv`.
+        variation: as in `TouchVectorEnv`.
         gel: as in `TouchVectorEnv`.
         touch: as in `TouchVectorEnv`.
         n_threads: as in `TouchVectorEnv`.
@@ -36,14 +36,14 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         kind: str,
         num_envs: int,
         *,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         gel: FastGel | None = None,
         touch: str | None = None,
         n_threads: int | None = None,
         seed: int = 0,
     ) -> None:
         self.tasks = make_tasks(
-            kind, num_envs, gel=gel, imperfection=imperfection, touch=touch, autoreset="SameStep", n_threads=n_threads
+            kind, num_envs, gel=gel, variation=variation, touch=touch, autoreset="SameStep", n_threads=n_threads
         )
         self.tasks.seed([seed + number for number in range(num_envs)])
         self.render_mode = None

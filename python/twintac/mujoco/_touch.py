@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from .. import Coupling, FastGel, Imperfection, Sensor, SensorBatch, SensorState, Twin
+from .. import Coupling, FastGel, Sensor, SensorBatch, SensorState, SensorVariation, Twin
 from ._clock import Clock
 from ._declared import declared
 from ._geoms import Geoms, filtered, number_of
@@ -88,7 +88,7 @@ class TouchSensors:
         gel: the surrogate of the gel of all sensors; PhysTac's unless given.
         twin: with a twin, readings are those of its barometers, with gains and viscoelastic
             relaxation; without, readings are the pressures at the ports.
-        imperfection: the sensor variation, from which each sensor is drawn; perfect sensors unless
+        variation: the sensor variation, from which each sensor is drawn; perfect sensors unless
             given.
         friction: Coulomb's coefficient of every body on every gel.
         retardation_s: time constant of the gel's damping, s, see `twintac.Coupling`.
@@ -115,7 +115,7 @@ class TouchSensors:
         sensor: Sensor | None = None,
         gel: FastGel | None = None,
         twin: Twin | None = None,
-        imperfection: Imperfection | None = None,
+        variation: SensorVariation | None = None,
         friction: float = 0.8,
         retardation_s: float = 0.005,
         geoms: Sequence[str] | None = None,
@@ -145,7 +145,7 @@ class TouchSensors:
             gel,
             self._geoms.bodies,
             n_worlds * len(self._site),
-            imperfection=imperfection,
+            variation=variation,
             twin=twin,
             coupling=Coupling(sensor, friction=friction, retardation_s=retardation_s),
             seed=seed,

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 pub(crate) use dataset::Dataset;
 pub(crate) use design::Design;
-pub(crate) use fast::{FastImperfection, FastTrain};
+pub(crate) use fast::{FastTrain, FastVariation};
 pub(crate) use stream::{Ports, RowFormat, Stream};
 pub(crate) use view::View;
 pub(crate) use wire::Wire;
@@ -98,7 +98,8 @@ pub(crate) enum FastCommand {
     Train(FastTrain),
     /// Estimate sensor variation from a trained model and recordings: a file for many simulated
     /// sensors.
-    Imperfection(FastImperfection),
+    #[command(alias = "imperfection")]
+    Variation(FastVariation),
 }
 
 #[derive(Args, Debug)]

@@ -57,7 +57,7 @@ fn help_on_each_command() {
         insta::assert_snapshot!(format!("help_{command}"), said(&["help", command]));
     }
     insta::assert_snapshot!("help_fast_train", said(&["help", "fast", "train"]));
-    insta::assert_snapshot!("help_fast_imperfection", said(&["help", "fast", "imperfection"]));
+    insta::assert_snapshot!("help_fast_variation", said(&["help", "fast", "variation"]));
 }
 
 /// The pictures of PhysTac in the documentation. After an intended change:

@@ -152,10 +152,10 @@ impl Files {
         };
         let out = self.folder.path().join("not-adapted");
         let out = ["--out", out.to_str().unwrap()];
-        for (command, more) in [("evaluate", &[][..]), ("adapt", &out), ("fast imperfection", &[])] {
+        for (command, more) in [("evaluate", &[][..]), ("adapt", &out), ("fast variation", &[])] {
             let said = match command {
-                "fast imperfection" => {
-                    let arguments = ["fast", "imperfection", "--model", model, "--recordings", presses];
+                "fast variation" => {
+                    let arguments = ["fast", "variation", "--model", model, "--recordings", presses];
                     String::from_utf8_lossy(&twintac(&arguments).stderr).into_owned()
                 }
                 _ => said(command, more),

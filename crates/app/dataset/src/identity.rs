@@ -11,7 +11,7 @@ use twintac_model::{gel_like, gel_of};
 use twintac_protocol::Protocol;
 use twintac_recording::Provenance;
 use twintac_sensor::SensorFile;
-use twintac_sensors::Imperfection;
+use twintac_sensors::SensorVariation;
 use twintac_simulate::{Gel, SimulateSettings};
 use twintac_store::{Digest, Keyed, StoreError};
 use twintac_tables::FastTables;
@@ -29,7 +29,7 @@ pub(super) struct Inputs {
     pub(super) fast: Option<Keyed<FastTables>>,
     pub(super) twin: Option<Model>,
     twin_sha256: Option<String>,
-    pub(super) imperfection: Option<Imperfection>,
+    pub(super) variation: Option<SensorVariation>,
 }
 
 /// The content of `dataset.toml`. Files are identified by their content, not by their path.
@@ -51,7 +51,7 @@ struct Identity<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_sha256: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    imperfection: Option<&'a Imperfection>,
+    variation: Option<&'a SensorVariation>,
     /// With a surrogate these settings have no effect but on the depths of tables.
     simulate: &'a SimulateSettings,
     protocol: &'a Protocol,
@@ -95,10 +95,11 @@ impl Inputs {
                     .to_owned(),
             ));
         }
-        let imperfection = plan.imperfection.as_deref().map(read_imperfection).transpose()?;
-        if imperfection.is_some() && fast.is_none() {
+        let variation = plan.variation.as_deref().map(read_variation).transpose()?;
+        if variation.is_some() && fast.is_none() {
             return Err(WorkError::Input(
-                "--imperfection needs --fast: sensors with variation are computed with the surrogate of the gel".to_owned(),
+                "--variation needs --fast: sensors with variation are computed with the surrogate of the gel"
+                    .to_owned(),
             ));
         }
         Ok(Self {
@@ -109,7 +110,7 @@ impl Inputs {
             simulate,
             fast,
             twin,
-            imperfection,
+            variation,
         })
     }
 
@@ -132,7 +133,7 @@ impl Inputs {
             fast_gel_sha256: self.fast.as_ref().map(Keyed::digest),
             readings: if self.twin.is_some() { "twin" } else { "ports" },
             twin_sha256: self.twin_sha256.as_deref(),
-            imperfection: self.imperfection.as_ref(),
+            variation: self.variation.as_ref(),
             simulate: &self.simulate,
             protocol: &self.protocol,
         };
@@ -202,8 +203,8 @@ fn read_protocol(file: &Path) -> Result<Protocol, WorkError> {
     Ok(protocol)
 }
 
-fn read_imperfection(file: &Path) -> Result<Imperfection, WorkError> {
-    Ok(Imperfection::parse(
+fn read_variation(file: &Path) -> Result<SensorVariation, WorkError> {
+    Ok(SensorVariation::parse(
         &file.display().to_string(),
         &read_text(file)?,
     )?)

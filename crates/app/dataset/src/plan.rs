@@ -51,7 +51,7 @@ pub struct DatasetPlan {
     /// at the ports.
     pub twin: Option<PathBuf>,
     /// File of the sensor variation: each press has an imperfect sensor of its own.
-    pub imperfection: Option<PathBuf>,
+    pub variation: Option<PathBuf>,
     /// File of settings of the simulation, in a table `[simulate]`.
     pub settings: Option<PathBuf>,
 }
@@ -111,7 +111,7 @@ impl DatasetPlan {
                 depth_mm: Range::Between(DEPTHS.map(|part| (part * height_mm).min(limit_mm))),
                 speed_mm_per_s: Range::Between(SPEEDS_MM_PER_S),
                 hold_s: Range::Between(HOLDS_S),
-                spin_rad: Range::Between([0.0, std::f64::consts::TAU]),
+                yaw_rad: Range::Between([0.0, std::f64::consts::TAU]),
                 tilt_rad: Range::Fixed(0.0),
                 clearance_mm: CLEARANCE_MM,
                 repeats: 1,

@@ -7,7 +7,7 @@ use twintac_fast::{Body, Touch};
 use twintac_protocol::PressPlan;
 use twintac_random::digest_stream;
 use twintac_recording::Press;
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_sensors::{SensorBatch, SensorVariation};
 use twintac_tables::{DepthTableStore, FastTables};
 use twintac_work::{Silent, WorkError};
 
@@ -27,9 +27,9 @@ pub(super) fn press(inputs: &Inputs, plan: &PressPlan, seed: u64) -> Result<Pres
             &store
         }
     };
-    match (&inputs.fast, &inputs.imperfection, &inputs.twin) {
-        (Some(fast), Some(imperfection), twin) => {
-            let sensor = (imperfection, digest_stream(seed, &plan.name).next_u64());
+    match (&inputs.fast, &inputs.variation, &inputs.twin) {
+        (Some(fast), Some(variation), twin) => {
+            let sensor = (variation, digest_stream(seed, &plan.name).next_u64());
             by_imperfect_sensor(inputs, (fast, twin.as_ref()), sensor, source, plan)
         }
         (_, _, Some(twin)) => by_twin(inputs, twin, source, plan),
@@ -89,7 +89,7 @@ fn at_ports(inputs: &Inputs, source: &dyn DepthTableSource, plan: &PressPlan) ->
 fn by_imperfect_sensor(
     inputs: &Inputs,
     (fast, twin): (&FastTables, Option<&Model>),
-    (imperfection, number): (&Imperfection, u64),
+    (variation, number): (&SensorVariation, u64),
     source: &dyn DepthTableSource,
     plan: &PressPlan,
 ) -> Result<Press, WorkError> {
@@ -100,7 +100,7 @@ fn by_imperfect_sensor(
     let shape = inputs.gel.shape(&plan.indenter)?;
     let bodies = [Body::clone(&*fast.body(shape, described)?)];
     let twin = twin.map(|model| &model.twin);
-    let mut sensor = SensorBatch::new(fast.gel(), twin, imperfection.clone(), [1, 1], number);
+    let mut sensor = SensorBatch::new(fast.gel(), twin, variation.clone(), [1, 1], number);
     let (mut readings_kpa, mut wrench) = (vec![0.0; n_taxels], [[0.0; 6]]);
     let (mut before_s, mut force_n) = (0.0, Vec::with_capacity(trajectory.len()));
     for (frame, (time_s, _)) in trajectory.iter().enumerate() {

@@ -224,14 +224,14 @@ fn a_press_that_cannot_be_simulated_is_left_out_and_said() {
 #[test]
 fn each_press_has_an_imperfect_sensor_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("imperfection.toml");
+    let file = folder.path().join("variation.toml");
     fs::write(
         &file,
-        "[imperfection]\noffset_deviation_kpa = 0.5\nheight_deviation_mm = 0.1\n",
+        "[variation]\noffset_deviation_kpa = 0.5\nheight_deviation_mm = 0.1\n",
     )
     .unwrap();
     let plan = DatasetPlan {
-        imperfection: Some(file),
+        variation: Some(file),
         ..fast(14)
     };
     assert_eq!(merged(&plan, 1, 2), merged(&plan, 5, 1));

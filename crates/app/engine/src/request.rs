@@ -169,7 +169,7 @@ pub(crate) enum Quality {
     /// By the surrogate.
     Surrogate {
         /// Out-of-distribution score: above 1, the numbers may be wrong.
-        novelty: f32,
+        ood_score: f32,
     },
 }
 

@@ -97,7 +97,7 @@ impl Surrogate {
         let mut pressures = vec![0.0; self.reader.n_taxels()];
         let mut wrench = [0.0; 6];
         self.reader.read(&bodies, &mut pressures, &mut wrench);
-        let novelty = self.reader.novelty(&bodies);
+        let ood_score = self.reader.ood_score(&bodies);
         let pressure_kpa: Vec<f64> = pressures.into_iter().map(f64::from).collect();
         if let Some(map) = &mut self.map {
             map.show(&pressure_kpa, arrays);
@@ -112,7 +112,7 @@ impl Surrogate {
             force_n: force_n.to_array(),
             torque_n_mm: (torque_n_mm + lever_mm.cross(force_n)).to_array(),
             pressure_kpa,
-            quality: Quality::Surrogate { novelty },
+            quality: Quality::Surrogate { ood_score },
             provenance: PROVENANCE,
         })
     }

@@ -235,7 +235,10 @@ fn several_shapes_press_as_by_the_surrogate() {
         found["force_n"],
         json!([0, 1, 2].map(|axis| f64::from(wrench[axis])))
     );
-    assert_eq!(found["novelty"].as_f64().unwrap() as f32, reader.novelty(&bodies));
+    assert_eq!(
+        found["ood_score"].as_f64().unwrap() as f32,
+        reader.ood_score(&bodies)
+    );
     // Both have a force, and the drawn gel follows both down.
     let alone = ask(&mut engine, &touch(&placed[..1]));
     let force_n = |frame: &Value| -frame["force_n"][2].as_f64().unwrap();

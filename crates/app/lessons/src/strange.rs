@@ -84,12 +84,12 @@ fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, Sh
     for press in presses {
         let body = Body::new(&press.shape, &Surfaces::new())?;
         let frames = press.frames.iter();
-        all.extend(frames.map(|frame| f64::from(reader.novelty(&[(&body, frame.gel_from_indenter)]))));
+        all.extend(frames.map(|frame| f64::from(reader.ood_score(&[(&body, frame.gel_from_indenter)]))));
     }
     Ok(all)
 }
 
 fn flagged(novelties: &[f64]) -> Option<f64> {
-    let n = novelties.iter().filter(|novelty| **novelty > 1.0).count();
+    let n = novelties.iter().filter(|ood_score| **ood_score > 1.0).count();
     (!novelties.is_empty()).then(|| 100.0 * n as f64 / novelties.len() as f64)
 }

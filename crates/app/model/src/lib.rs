@@ -11,7 +11,7 @@
 //! - A [`Locator`] estimates from readings where and how deep the gel is touched, and by which
 //!   indenter ([`Located`]); a [`LocatorTracker`] does it frame by frame.
 //! - [`adapt_model`] adapts a twin to another sensor from a few presses.
-//! - [`find_imperfection`] estimates how far sensors of a kind vary (gains, positions, contact
+//! - [`find_variation`] estimates how far sensors of a kind vary (gains, positions, contact
 //!   heights, read-out), for simulated imperfect sensors.
 //!
 //! # How it works
@@ -39,7 +39,6 @@
 mod adapt;
 mod figures;
 mod gel;
-mod imperfection;
 mod locate;
 mod new_gel;
 mod predict;
@@ -47,11 +46,11 @@ mod press_checksum;
 mod taxels;
 mod temperature;
 mod unseen;
+mod variation;
 
 pub use adapt::{AdaptationPlan, AdaptedModel, adapt_model};
 pub use figures::{BaselineFigures, Figures, TwinFigures, names};
 pub use gel::{gel_like, gel_of};
-pub use imperfection::{FoundImperfection, ImperfectionSources, find_imperfection, sensor_of_model};
 pub use locate::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, LocatorTracker};
 pub use new_gel::NewGel;
 pub use predict::{Predicted, Predictor};
@@ -59,3 +58,4 @@ pub use press_checksum::press_checksum;
 pub use taxels::{left_out, ports_mm, taxels};
 pub use temperature::compensate;
 pub use unseen::{UnseenEvaluation, evaluate_elsewhere};
+pub use variation::{FoundVariation, VariationSources, find_variation, sensor_of_model};

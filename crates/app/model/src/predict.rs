@@ -379,9 +379,9 @@ impl Predicted {
                 });
             }
         }
-        let unlikeness = |press: &Prediction, frame: usize| {
+        let ood_score = |press: &Prediction, frame: usize| {
             let sure = press.certainty.as_ref();
-            sure.map_or(0.0, |sure| sure.unlikeness[frame])
+            sure.map_or(0.0, |sure| sure.ood_score[frame])
         };
         let x_label = if self.presses.len() > 1 {
             "time, presses one after the other (s)"
@@ -400,7 +400,7 @@ impl Predicted {
             panel("reading, 90 % (kPa)", readings),
         ];
         if is_sure {
-            panels.push(panel("OOD score", vec![series("", Ink::Text, &unlikeness)]));
+            panels.push(panel("OOD score", vec![series("", Ink::Text, &ood_score)]));
         } else {
             panels[2].y_label = "reading (kPa)".to_owned();
         }

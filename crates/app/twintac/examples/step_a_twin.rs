@@ -23,8 +23,8 @@ pub fn step(model: &Path) -> Result<Vec<f64>, Error> {
             pressed.force_n(),
             pressed.half_width_kpa().unwrap_or_default()
         );
-        if let Some((unlikeness, true)) = pressed.unlikeness() {
-            println!("out-of-distribution score: {unlikeness:.1}");
+        if let Some((ood_score, true)) = pressed.ood_score() {
+            println!("out-of-distribution score: {ood_score:.1}");
         }
     }
     Ok(readings_kpa)

@@ -4,16 +4,16 @@
 
 use std::time::Instant;
 
-use twintac::{Body, Error, FastGel, Imperfection, Pose, SensorBatch, Shape, Touch};
+use twintac::{Body, Error, FastGel, Pose, SensorBatch, SensorVariation, Shape, Touch};
 
 const N_SENSORS: usize = 1024;
 
 fn main() -> Result<(), Error> {
-    // Made by `twintac fast imperfection` from a model and recordings of the emulated bench.
-    let text = include_str!("data/imperfection.toml");
-    let imperfection = Imperfection::parse("imperfection.toml", text)?;
-    for (name, imperfection) in [("perfect", Imperfection::default()), ("imperfect", imperfection)] {
-        let (readings_kpa, seconds) = step(imperfection, 100)?;
+    // Made by `twintac fast variation` from a model and recordings of the emulated bench.
+    let text = include_str!("data/variation.toml");
+    let variation = SensorVariation::parse("variation.toml", text)?;
+    for (name, variation) in [("perfect", SensorVariation::default()), ("imperfect", variation)] {
+        let (readings_kpa, seconds) = step(variation, 100)?;
         println!(
             "{name}: the first sensor reads {:.2?} kPa (simulated), {:.0} sensors are read a second",
             &readings_kpa[..8],
@@ -25,12 +25,12 @@ fn main() -> Result<(), Error> {
 
 /// Presses each ball a little deeper at each step. Returns the last readings of all sensors, kPa,
 /// and the time that the steps took, s.
-pub fn step(imperfection: Imperfection, n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
+pub fn step(variation: SensorVariation, n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
     let n_threads = std::thread::available_parallelism().map_or(1, usize::from);
     let (gel, seed) = (FastGel::phystac()?, 1);
     // A trained twin instead of `None` adds the gains and the viscoelastic relaxation of its
     // barometers.
-    let mut sensors = SensorBatch::new(&gel, None, imperfection, [N_SENSORS, n_threads], seed);
+    let mut sensors = SensorBatch::new(&gel, None, variation, [N_SENSORS, n_threads], seed);
     let bodies = [Body::new(&Shape::Sphere { radius_mm: 6.0 }, &Default::default())?];
     let ends: Vec<usize> = (1..=N_SENSORS).collect(); // one body touches each sensor
     let (mut readings_kpa, mut wrench) = (vec![0.0; 8 * N_SENSORS], vec![[0.0; 6]; N_SENSORS]);

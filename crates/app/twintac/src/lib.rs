@@ -71,7 +71,7 @@
 //! | [`Twin`], [`Prediction`] | a trained twin, and its predicted readings along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin, stepped frame by frame: at one location, or with given port pressures for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`], [`Friction`] | the surrogate of the gel: about 5 µs a reading, thousands of sensors in one call; friction of sliding contacts | `fast` |
-//! | [`SensorBatch`], [`Imperfection`], [`CoupledBatch`] | the same with a twin's gains and relaxation, with sensor variation, and with friction of bodies that move freely | `sensors` |
+//! | [`SensorBatch`], [`SensorVariation`], [`CoupledBatch`] | the same with a twin's gains and relaxation, with sensor variation, and with friction of bodies that move freely | `sensors` |
 //! | [`Tasks`], [`Kind`] | tasks for reinforcement learning, many environments in one call | `tasks` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | contact estimation: from readings to location, depth, force, and which of the known shapes | `fast` |
 //! | [`Locator`], [`LocatorTracker`] | contact estimation by a trained twin, which accounts for relaxation | `run` |
@@ -270,7 +270,7 @@ pub use twintac_run::{Metrics, Run, RunSettings, guess_import, import_files, rea
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{
-    CoupledBatch, Coupling, HeldTouch, Imperfection, SensorBatch, SensorState, TouchId, TouchedTwice,
+    CoupledBatch, Coupling, HeldTouch, SensorBatch, SensorState, SensorVariation, TouchId, TouchedTwice,
     most_sensors,
 };
 pub use twintac_shape::{
@@ -280,7 +280,7 @@ pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "run")]
 pub use twintac_store::Outcome;
 #[cfg(feature = "tasks")]
-pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};
+pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_variation};
 #[cfg(feature = "run")]
 pub use twintac_work::{Caller, Progress, Silent, WorkError, sha256_of_file};
 

@@ -38,8 +38,8 @@ impl Press {
 
     /// Sets the yaw of the indenter about the axis of the press, radians.
     #[must_use]
-    pub fn spin_rad(mut self, spin_rad: f64) -> Self {
-        self.plan.rotation = DQuat::from_rotation_z(spin_rad);
+    pub fn yaw_rad(mut self, yaw_rad: f64) -> Self {
+        self.plan.rotation = DQuat::from_rotation_z(yaw_rad);
         self
     }
 

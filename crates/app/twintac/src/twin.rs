@@ -11,7 +11,7 @@ use twintac_model::Predictor;
 use twintac_recording::Provenance;
 use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_sensors::{SensorBatch, SensorVariation};
 
 use crate::{Error, Press, Sensor};
 #[cfg(feature = "run")]
@@ -105,7 +105,7 @@ impl Twin {
     pub fn sensors(
         &self,
         gel: &FastGel,
-        imperfection: Imperfection,
+        variation: SensorVariation,
         [n_sensors, n_threads]: [usize; 2],
         seed: u64,
     ) -> Result<SensorBatch, Error> {
@@ -114,7 +114,7 @@ impl Twin {
         Ok(SensorBatch::new(
             gel,
             twin,
-            imperfection,
+            variation,
             [n_sensors, n_threads],
             seed,
         ))

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 #![allow(dead_code, unreachable_pub)] // each example has a `main` of its own
 
-use twintac::Imperfection;
+use twintac::SensorVariation;
 
 #[path = "../examples/predict_along_a_press.rs"]
 mod predict_along_a_press;
@@ -30,12 +30,12 @@ fn a_sensor_is_read() {
 
 #[test]
 fn a_thousand_sensors_feel_what_presses_them() {
-    let imperfection = Imperfection {
+    let variation = SensorVariation {
         gain_deviation: 0.05,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
-    let read = |imperfection: Imperfection| touch_for_learning::step(imperfection, 2).unwrap().0;
-    let [perfect_kpa, imperfect_kpa] = [Imperfection::default(), imperfection].map(read);
+    let read = |variation: SensorVariation| touch_for_learning::step(variation, 2).unwrap().0;
+    let [perfect_kpa, imperfect_kpa] = [SensorVariation::default(), variation].map(read);
     assert_ne!(perfect_kpa, imperfect_kpa);
     for readings_kpa in perfect_kpa.chunks_exact(8).chain(imperfect_kpa.chunks_exact(8)) {
         let largest = readings_kpa.iter().copied().fold(f32::NEG_INFINITY, f32::max);

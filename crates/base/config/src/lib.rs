@@ -23,7 +23,8 @@
 //! A text is parsed twice: once into a tree that keeps the position (span) of each key and value,
 //! and once by serde into the type. When serde reports an error, its position is looked up in the
 //! tree, which gives the dotted path of the field and its line. Numbers that are not finite (`nan`,
-//! `inf`, `1e999`) are rejected before serde sees them.
+//! `inf`, `1e999`) are rejected before serde sees them. Names that fields had before are replaced
+//! by those of today.
 //!
 //! Values that parse can still be unusable. A settings type therefore implements [`Checked`]: it
 //! passes each of its numbers to [`Ranges`] together with the range in which the number makes
@@ -35,9 +36,11 @@
 //! about.
 
 mod checked;
+mod former;
 mod place;
 mod tried;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use serde::Serialize;
@@ -116,6 +119,9 @@ pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<Document<T>,
             "correct the line",
         )
     })?;
+    if let Cow::Owned(renamed) = former::renamed(text, table.get_ref()) {
+        return parse(file, &renamed);
+    }
     if let Some((span, field, number)) = place::not_finite(table.get_ref()) {
         let line = place::line_of(text, span.start);
         return Err(error(line, field, format!("is {number}"), "give a finite number"));

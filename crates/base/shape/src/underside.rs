@@ -44,7 +44,7 @@ impl Underside {
     /// one of them displaces, divided by the volume that at least one of them displaces. It is 0
     /// for equal indentations, 1 if nothing is shared, and 0 if neither touches the gel.
     #[must_use]
-    pub fn unlikeness(&self, other: &Self, depth_mm: f64) -> f64 {
+    pub fn difference(&self, other: &Self, depth_mm: f64) -> f64 {
         let (mut shared, mut either) = (0.0, 0.0);
         for ((own, other), area) in self.heights_mm.iter().zip(&other.heights_mm).zip(areas_mm2()) {
             shared += area * (depth_mm - own.max(*other)).max(0.0);
@@ -130,9 +130,9 @@ mod tests {
     #[test]
     fn shapes_differ_by_what_they_dent_and_turned_balls_do_not() {
         let same = underside(&Shape::Sphere { radius_mm: 5.0 }, DQuat::from_rotation_z(0.7));
-        assert!(ball(5.0).unlikeness(&same, 1.0) < 1e-3);
+        assert!(ball(5.0).difference(&same, 1.0) < 1e-3);
         // A shallow indentation of a ball has the volume π R d².
-        let by_radius = ball(5.0).unlikeness(&ball(10.0), 0.2);
+        let by_radius = ball(5.0).difference(&ball(10.0), 0.2);
         assert!((by_radius - 0.5).abs() < 0.06, "{by_radius}");
         let punch = Shape::Cylinder {
             radius_mm: 5.0,
@@ -141,8 +141,8 @@ mod tests {
         };
         let punch = underside(&punch, DQuat::IDENTITY);
         for depth_mm in [0.05, 0.5, 1.5] {
-            assert!(ball(12.5).unlikeness(&punch, depth_mm) > 0.3, "{depth_mm}");
+            assert!(ball(12.5).difference(&punch, depth_mm) > 0.3, "{depth_mm}");
         }
-        assert_eq!(ball(5.0).unlikeness(&punch, -0.1), 0.0);
+        assert_eq!(ball(5.0).difference(&punch, -0.1), 0.0);
     }
 }

@@ -12,7 +12,7 @@
 //!
 //! A [`Part`] has a list of locations ([`Places`]): a grid, random locations, or locations above
 //! taxels. The whole list is pressed with each indenter, as often as the part repeats it. Depth,
-//! speed, hold, yaw (`spin_rad`) and tilt are a number, a range or a choice ([`Range`]). Random
+//! speed, hold, yaw (`yaw_rad`) and tilt are a number, a range or a choice ([`Range`]). Random
 //! values of a press depend only on the seed and on the press's name, so a press stays the same
 //! when other presses are added or left out. [`PressPlan::trajectory`] gives depth over time,
 //! [`LoadPlan::course`] force over time, and [`PressPath::frames`] poses over time.

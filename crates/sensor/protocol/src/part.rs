@@ -31,7 +31,7 @@ pub struct Part {
     pub hold_s: Range,
     /// Yaw: rotation about the vertical, radians.
     #[serde(default)]
-    pub spin_rad: Range,
+    pub yaw_rad: Range,
     /// Tilt from the vertical, in a random direction, radians.
     #[serde(default)]
     pub tilt_rad: Range,
@@ -50,7 +50,7 @@ const MOST_MM_PER_S: f64 = 1000.0;
 pub(crate) const LONGEST_S: f64 = 3600.0;
 
 /// Largest yaw, radians.
-const MOST_SPIN_RAD: f64 = 100.0;
+const MOST_YAW_RAD: f64 = 100.0;
 
 pub(crate) fn once() -> u32 {
     1
@@ -91,7 +91,7 @@ impl Part {
             ("depth_mm", &self.depth_mm, [1e-3, MOST_MM]),
             ("speed_mm_per_s", &self.speed_mm_per_s, [1e-3, MOST_MM_PER_S]),
             ("hold_s", &self.hold_s, [0.0, LONGEST_S]),
-            ("spin_rad", &self.spin_rad, [-MOST_SPIN_RAD, MOST_SPIN_RAD]),
+            ("yaw_rad", &self.yaw_rad, [-MOST_YAW_RAD, MOST_YAW_RAD]),
             ("tilt_rad", &self.tilt_rad, [0.0, 1.0]),
             ("clearance_mm", &Range::Fixed(self.clearance_mm), [0.0, MOST_MM]),
         ];
@@ -138,13 +138,13 @@ impl Part {
         let [x_mm, y_mm] = spots.at(number % spots.count(), &mut random);
         let tilt_towards = DQuat::from_rotation_z(std::f64::consts::TAU * random.random::<f64>()) * DVec3::X;
         let tilt = DQuat::from_axis_angle(tilt_towards, self.tilt_rad.draw(&mut random));
-        let spin = DQuat::from_rotation_z(self.spin_rad.draw(&mut random));
+        let yaw = DQuat::from_rotation_z(self.yaw_rad.draw(&mut random));
         PressPlan {
             name,
             indenter: indenter.to_owned(),
             x_mm,
             y_mm,
-            rotation: tilt * spin,
+            rotation: tilt * yaw,
             clearance_mm: self.clearance_mm,
             depth_mm: self.depth_mm.draw(&mut random),
             speed_mm_per_s: self.speed_mm_per_s.draw(&mut random),

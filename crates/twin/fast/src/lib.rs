@@ -10,7 +10,7 @@
 //!   makes one from training presses ([`Lesson`]), which `twintac-teach` computes by FEM.
 //! - [`Body`]: a rigid shape, prepared so that distances to it are fast.
 //! - [`FastReader`] and [`FastBatch`]: evaluate the surrogate for one sensor or for many.
-//!   [`FastReader::novelty`] returns the out-of-distribution (OOD) score of a contact.
+//!   [`FastReader::ood_score`] returns the out-of-distribution (OOD) score of a contact.
 //! - [`Friction`]: adds the friction of one body to force, torque and pressures.
 //! - [`FastGel::judge`]: errors on test presses, as a [`Judgement`].
 //!
@@ -96,7 +96,7 @@
 //!
 //! ## OOD score
 //!
-//! The score (`novelty`) is computed by a call of its own, so that the evaluation stays cheap. It
+//! The score is computed by a call of its own, so that the evaluation stays cheap. It
 //! contains the distance to the nearest of all training contacts, in numbers that do not depend on
 //! the location: how deep, steep, large, tilted and uneven a contact is at each height. The
 //! threshold, a score of 1, is the 99th percentile of the distances from an eighth of the training

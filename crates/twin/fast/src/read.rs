@@ -104,7 +104,7 @@ impl FastReader {
     ///
     /// # Panics
     /// If a pose is not finite.
-    pub fn novelty(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
+    pub fn ood_score(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
         let narrow = bodies

@@ -267,13 +267,13 @@ fn a_contact_unlike_what_was_taught_is_new() {
     let thin = Body::new(&Shape::Sphere { radius_mm: 1.0 }, &Surfaces::new()).unwrap();
     let at = |z_mm: f64| Pose::from_position(DVec3::new(0.0, 0.0, z_mm));
     // A training press presses a ball 1, 2 and 3 mm deep there.
-    assert!(reader.novelty(&[(&ball(), at(7.5))]) < 1.0);
-    assert!(reader.novelty(&[(&thin, at(7.5))]) > 1.0);
-    assert!(reader.novelty(&[(&ball(), at(3.5))]) > 1.0);
-    assert_eq!(reader.novelty(&[(&ball(), at(12.0))]), 0.0);
+    assert!(reader.ood_score(&[(&ball(), at(7.5))]) < 1.0);
+    assert!(reader.ood_score(&[(&thin, at(7.5))]) > 1.0);
+    assert!(reader.ood_score(&[(&ball(), at(3.5))]) > 1.0);
+    assert_eq!(reader.ood_score(&[(&ball(), at(12.0))]), 0.0);
     // Between the points of the grid, none of which is inside the ball.
     let between = Pose::from_position(DVec3::new(1.0, 1.0, 8.0));
-    assert!(reader.novelty(&[(&thin, between)]) > 1.0);
+    assert!(reader.ood_score(&[(&thin, between)]) > 1.0);
 }
 
 #[test]
@@ -312,7 +312,7 @@ fn the_built_in_fingertip_carries_a_ball_about_as_a_half_space_does() {
 }
 
 /// The OOD score of a ball, from a surrogate that is trained on the presses at some locations only.
-fn novelty_of_a_ball(
+fn ood_score_of_a_ball(
     is_taught: impl Fn(&DVec3) -> bool,
     (n_steps, n_held_out): (usize, usize),
 ) -> impl FnMut(DVec3) -> f32 {
@@ -327,18 +327,18 @@ fn novelty_of_a_ball(
     };
     let gel = FastGel::train(&sensor, (&taught, &held_out), &settings, 1, &mut |_| ()).unwrap();
     let (mut reader, ball) = (gel.reader(), ball());
-    move |at_mm| reader.novelty(&[(&ball, Pose::from_position(at_mm))])
+    move |at_mm| reader.ood_score(&[(&ball, Pose::from_position(at_mm))])
 }
 
 #[test]
 fn a_place_that_was_not_taught_is_new() {
     let (middle, edge) = (DVec3::new(0.0, 0.0, 7.5), DVec3::new(13.0, 0.0, 7.5));
-    let mut in_the_middle = novelty_of_a_ball(|at| at.x.abs() < 7.0, (3, 0));
+    let mut in_the_middle = ood_score_of_a_ball(|at| at.x.abs() < 7.0, (3, 0));
     assert!(in_the_middle(middle) < 1.0 && in_the_middle(edge) > 1.0);
-    let mut at_the_edge = novelty_of_a_ball(|at| at.x.abs() > 7.0, (3, 0));
+    let mut at_the_edge = ood_score_of_a_ball(|at| at.x.abs() > 7.0, (3, 0));
     assert!(at_the_edge(middle) > 1.0 && at_the_edge(edge) < 1.0);
     // A gel that is its own mirror image is also trained on the other side.
-    let mut on_the_left = novelty_of_a_ball(|at| at.x < -7.0, (3, 0));
+    let mut on_the_left = ood_score_of_a_ball(|at| at.x < -7.0, (3, 0));
     assert!(on_the_left(middle) > 1.0 && on_the_left(edge) < 1.0);
     // A ball above an untrained location has no contact.
     assert_eq!(on_the_left(DVec3::new(0.0, 0.0, 10.6)), 0.0);
@@ -347,8 +347,8 @@ fn a_place_that_was_not_taught_is_new() {
 #[test]
 fn a_gel_that_learned_next_to_nothing_knows_nothing() {
     let place = DVec3::new(0.0, 0.0, 7.5);
-    assert!(novelty_of_a_ball(|_| true, (1, 0))(place) < 1.0);
-    assert!(novelty_of_a_ball(|_| true, (1, 15))(place) > 1.0);
+    assert!(ood_score_of_a_ball(|_| true, (1, 0))(place) < 1.0);
+    assert!(ood_score_of_a_ball(|_| true, (1, 15))(place) > 1.0);
 }
 
 #[test]

@@ -155,10 +155,10 @@ fn what_is_thin_presses_as_what_is_thick() {
                 for depth_mm in DEPTHS_MM {
                     let pose = at(place_mm, depth_mm, tilt);
                     let [thin_n, tall_n] = [&thin, &tall].map(|body| force_n(&mut reader, body, pose));
-                    let novelty = reader.novelty(&[(&thin, pose)]);
+                    let ood_score = reader.ood_score(&[(&thin, pose)]);
                     assert!(
-                        (thin_n / tall_n - 1.0).abs() < 0.05 || novelty > 1.0,
-                        "{name} of {height_mm} mm, {depth_mm} mm deep, tilted by {tilt}, at {place_mm:?}: {thin_n} N, {tall_n} N, {novelty}"
+                        (thin_n / tall_n - 1.0).abs() < 0.05 || ood_score > 1.0,
+                        "{name} of {height_mm} mm, {depth_mm} mm deep, tilted by {tilt}, at {place_mm:?}: {thin_n} N, {tall_n} N, {ood_score}"
                     );
                 }
             }
@@ -266,7 +266,7 @@ fn a_sunk_plate_is_felt_in_every_position() {
             let now_n = force_n(&mut reader, &body, pose);
             // On its edge the plate may lie between the points of the grid.
             assert!(
-                now_n > 0.1 || reader.novelty(&[(&body, pose)]) > 1.0,
+                now_n > 0.1 || reader.ood_score(&[(&body, pose)]) > 1.0,
                 "{shape:?} turned by {step}: {now_n}"
             );
         }
@@ -310,8 +310,8 @@ fn what_is_narrower_than_the_grid_is_new() {
     for (place_mm, depth_mm) in each() {
         let pose = at(place_mm, depth_mm, 0.0);
         for shape in &narrow {
-            let novelty = reader.novelty(&[(&body(shape), pose)]);
-            assert!(novelty > 1.0, "{shape:?}, {depth_mm} mm deep: {novelty}");
+            let ood_score = reader.ood_score(&[(&body(shape), pose)]);
+            assert!(ood_score > 1.0, "{shape:?}, {depth_mm} mm deep: {ood_score}");
         }
     }
 }
@@ -338,10 +338,10 @@ fn a_tray_presses_as_a_block_or_is_new() {
         for (place_mm, depth_mm) in each() {
             let pose = at(place_mm, depth_mm, 0.0);
             let [tray_n, block_n] = [&tray, &block].map(|body| force_n(&mut reader, body, pose));
-            let novelty = reader.novelty(&[(&tray, pose)]);
+            let ood_score = reader.ood_score(&[(&tray, pose)]);
             assert!(
-                (tray_n / block_n - 1.0).abs() < 0.05 || novelty > 1.0,
-                "{sheet_mm} mm, {depth_mm} mm deep: {tray_n} N, {block_n} N, {novelty}"
+                (tray_n / block_n - 1.0).abs() < 0.05 || ood_score > 1.0,
+                "{sheet_mm} mm, {depth_mm} mm deep: {tray_n} N, {block_n} N, {ood_score}"
             );
         }
     }
@@ -353,8 +353,12 @@ fn what_was_taught_is_not_new_for_its_width() {
     for indenter in &SensorFile::phystac().unwrap().sensor.indenters {
         let body = body(&indenter.shape);
         for tilt in [0.0, 0.1, 0.3] {
-            let novelty = reader.novelty(&[(&body, at([0.7, 0.4], 1.0, tilt))]);
-            assert!(novelty < 1.0, "{}, tilted by {tilt}: {novelty}", indenter.name);
+            let ood_score = reader.ood_score(&[(&body, at([0.7, 0.4], 1.0, tilt))]);
+            assert!(
+                ood_score < 1.0,
+                "{}, tilted by {tilt}: {ood_score}",
+                indenter.name
+            );
         }
     }
 }

@@ -19,7 +19,7 @@ pub struct Contact {
     pub depth_mm: f64,
     /// Yaw (rotation about the vertical), radians, modulo the shape's symmetry; 0 for a round
     /// shape.
-    pub spin_rad: f64,
+    pub yaw_rad: f64,
     /// Force into the gel, N.
     pub force_n: f64,
     /// Deviation of the location along x and along y, mm.
@@ -27,7 +27,7 @@ pub struct Contact {
     /// Deviation of the depth, mm.
     pub depth_deviation_mm: f64,
     /// Deviation of the yaw, radians; 0 for a round shape.
-    pub spin_deviation_rad: f64,
+    pub yaw_deviation_rad: f64,
     /// Deviation of the force, N.
     pub force_deviation_n: f64,
     /// Covariance of x, y and depth, mm, and of yaw, radians.
@@ -44,7 +44,7 @@ impl Contact {
         Press {
             place_mm: self.place_mm,
             depth_mm: self.depth_mm,
-            spin_rad: self.spin_rad,
+            yaw_rad: self.yaw_rad,
         }
     }
 }

@@ -85,7 +85,7 @@ fn pose(gel: &FastGel, placed: &Placed, press: &Press) -> Pose {
     let touch_mm = gel.height_mm_at(press.place_mm) - placed.lowest_mm;
     Pose {
         position_mm: press.place_mm.extend(touch_mm - press.depth_mm),
-        rotation: DQuat::from_rotation_z(press.spin_rad),
+        rotation: DQuat::from_rotation_z(press.yaw_rad),
     }
 }
 

@@ -201,7 +201,7 @@ impl Hypothesis {
             settings.place_walk_mm,
             settings.place_walk_mm,
             settings.depth_walk_mm,
-            settings.spin_walk_rad,
+            settings.yaw_walk_rad,
         ];
         let mut spread = self.covariance.map(|row| row.map(|value| value * grown));
         for number in 0..N {

@@ -13,15 +13,15 @@ pub struct Press {
     /// Depth below first touch, mm.
     pub depth_mm: f64,
     /// Yaw (rotation about the vertical), radians.
-    pub spin_rad: f64,
+    pub yaw_rad: f64,
 }
 
 impl Press {
-    pub(crate) fn of([x, y, depth_mm, spin_rad]: [f64; N]) -> Self {
+    pub(crate) fn of([x, y, depth_mm, yaw_rad]: [f64; N]) -> Self {
         Self {
             place_mm: DVec2::new(x, y),
             depth_mm,
-            spin_rad,
+            yaw_rad,
         }
     }
 }

@@ -30,7 +30,7 @@ pub struct InverseSettings {
     /// Standard deviation of the random change of depth in one second, mm.
     pub depth_walk_mm: f64,
     /// Standard deviation of the random change of yaw in one second, radians.
-    pub spin_walk_rad: f64,
+    pub yaw_walk_rad: f64,
     /// Time after which evidence for a shape is reduced to 1/e, s.
     pub shape_memory_s: f64,
     /// Number of possible presses of each shape that are followed at once, at most 100.
@@ -53,7 +53,7 @@ impl Default for InverseSettings {
             touch_deviations: 6.0,
             place_walk_mm: 3.0,
             depth_walk_mm: 2.0,
-            spin_walk_rad: 1.0,
+            yaw_walk_rad: 1.0,
             shape_memory_s: 3.0,
             n_starts: 3,
             n_steps: 1,
@@ -73,7 +73,7 @@ impl Checked for InverseSettings {
             touch_deviations,
             place_walk_mm,
             depth_walk_mm,
-            spin_walk_rad,
+            yaw_walk_rad,
             shape_memory_s,
             n_starts,
             n_steps,
@@ -87,7 +87,7 @@ impl Checked for InverseSettings {
         ranges.number("touch_deviations", touch_deviations, 1e-3..=1e6);
         ranges.zero_or("place_walk_mm", place_walk_mm, 1e-9..=1e4);
         ranges.zero_or("depth_walk_mm", depth_walk_mm, 1e-9..=1e4);
-        ranges.zero_or("spin_walk_rad", spin_walk_rad, 1e-9..=1e4);
+        ranges.zero_or("yaw_walk_rad", yaw_walk_rad, 1e-9..=1e4);
         ranges.number("shape_memory_s", shape_memory_s, 1e-3..=1e6);
         ranges.number("n_starts", n_starts, 1.0..=100.0);
         ranges.number("n_steps", n_steps, 1.0..=100.0);

@@ -51,10 +51,10 @@ impl Starts {
         let n_readings = model.n_readings();
         let n_padded = n_readings.next_multiple_of(LANES);
         let places = [0, 1].map(|axis| 1.0 + (ranges[axis][1] - ranges[axis][0]).max(0.0) / SPACING_MM);
-        let n_spins = domain
+        let n_yaws = domain
             .turn_rad
             .map_or(1.0, |turn_rad| (turn_rad / SPIN_RAD).ceil());
-        let n_presses = places[0] * places[1] * n_spins * DEPTHS.len() as f64;
+        let n_presses = places[0] * places[1] * n_yaws * DEPTHS.len() as f64;
         if n_presses * n_padded as f64 > MOST_NUMBERS {
             return Err(InverseError::TooLarge {
                 presses: n_presses,
@@ -63,11 +63,11 @@ impl Starts {
             });
         }
         let [xs, ys] = [0, 1].map(|axis| evenly(ranges[axis], SPACING_MM));
-        let spins = match domain.turn_rad {
+        let yaws = match domain.turn_rad {
             None => vec![0.0],
             Some(turn_rad) => {
                 let n = (turn_rad / SPIN_RAD).ceil();
-                (0..n as usize).map(|spin| spin as f64 * turn_rad / n).collect()
+                (0..n as usize).map(|yaw| yaw as f64 * turn_rad / n).collect()
             }
         };
         let [least_mm, most_mm] = ranges[2];
@@ -80,7 +80,7 @@ impl Starts {
         for x in &xs {
             for y in &ys {
                 for depth in &depths {
-                    presses.extend(spins.iter().map(|spin| [*x, *y, *depth, *spin]));
+                    presses.extend(yaws.iter().map(|yaw| [*x, *y, *depth, *yaw]));
                 }
             }
         }

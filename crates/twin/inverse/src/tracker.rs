@@ -323,12 +323,12 @@ impl<M: ContactModel> Tracker<M> {
         };
         contact.place_deviation_mm = DVec2::new(deviation(0), deviation(1));
         contact.depth_deviation_mm = deviation(2);
-        contact.spin_deviation_rad = deviation(3);
+        contact.yaw_deviation_rad = deviation(3);
         contact.force_deviation_n = force_square.sqrt();
-        let [x, y, depth_mm, spin_rad] = told.at;
+        let [x, y, depth_mm, yaw_rad] = told.at;
         contact.place_mm = DVec2::new(x, y);
         contact.depth_mm = depth_mm;
-        contact.spin_rad = spin_rad;
+        contact.yaw_rad = yaw_rad;
         contact.force_n = told.force_n;
         contact.misfit = told.misfit(&self.readings_kpa, &self.alone);
     }

@@ -69,7 +69,7 @@ fn drawn(random: &mut impl Rng) -> Press {
     Press {
         place_mm: DVec2::new(random.random_range(-10.0..10.0), random.random_range(-4.0..4.0)),
         depth_mm: random.random_range(1.0..3.0),
-        spin_rad: random.random_range(0.0..PI),
+        yaw_rad: random.random_range(0.0..PI),
     }
 }
 
@@ -96,7 +96,7 @@ fn place_depth_force_and_shape_are_found() {
         n_told += 1;
         let (error, deviation) = (contact.place_mm - press.place_mm, contact.place_deviation_mm);
         let turn = if shape == 1 {
-            contact.spin_rad - press.spin_rad
+            contact.yaw_rad - press.yaw_rad
         } else {
             0.0
         };
@@ -105,7 +105,7 @@ fn place_depth_force_and_shape_are_found() {
             (error.y, deviation.y),
             (contact.depth_mm - press.depth_mm, contact.depth_deviation_mm),
             (contact.force_n - force_n, contact.force_deviation_n),
-            (turn - PI * (turn / PI).round(), contact.spin_deviation_rad + 1e-9),
+            (turn - PI * (turn / PI).round(), contact.yaw_deviation_rad + 1e-9),
         ];
         n_within += usize::from(
             errors
@@ -142,7 +142,7 @@ fn errors_are_as_large_as_is_said() {
         let press = Press {
             place_mm: DVec2::new(random.random_range(-10.0..10.0), random.random_range(-4.0..4.0)),
             depth_mm: random.random_range(0.8..3.0),
-            spin_rad: 0.0,
+            yaw_rad: 0.0,
         };
         let (readings_kpa, force_n) = read(0, &press);
         let mut tracker = inverse.start();
@@ -196,7 +196,7 @@ fn a_contact_that_slides_is_followed() {
         let press = Press {
             place_mm: DVec2::new(-8.0 + 16.0 * at, 3.0 - 6.0 * at),
             depth_mm: 1.5 + at,
-            spin_rad: 0.0,
+            yaw_rad: 0.0,
         };
         let contact = tracker
             .update(0.002, &noisy(read(0, &press).0, random))
@@ -215,7 +215,7 @@ fn the_floor_is_highest_below_the_contact() {
     let press = Press {
         place_mm: DVec2::new(-3.0, 1.0),
         depth_mm: 2.0,
-        spin_rad: 0.0,
+        yaw_rad: 0.0,
     };
     let mut tracker = KNOWN.start();
     let (readings_kpa, _) = read(0, &press);
@@ -289,7 +289,7 @@ fn what_cannot_be_is_an_error() {
         ("force_part", serde_json::json!({"force_part": -0.01})),
         ("place_walk_mm", serde_json::json!({"place_walk_mm": -3.0})),
         ("depth_walk_mm", serde_json::json!({"depth_walk_mm": -3.0})),
-        ("spin_walk_rad", serde_json::json!({"spin_walk_rad": -3.0})),
+        ("yaw_walk_rad", serde_json::json!({"yaw_walk_rad": -3.0})),
     ] {
         let settings: InverseSettings = serde_json::from_value(wrong).unwrap();
         let error = new(&shapes(), settings).unwrap_err();
@@ -321,7 +321,7 @@ fn every_setting_has_a_range() {
         "force_part",
         "place_walk_mm",
         "depth_walk_mm",
-        "spin_walk_rad",
+        "yaw_walk_rad",
     ];
     let defaults = serde_json::to_value(InverseSettings::default()).unwrap();
     for (field, default) in defaults.as_object().unwrap() {
@@ -351,7 +351,7 @@ fn a_frame_that_cannot_be_is_refused_and_the_contact_goes_on_as_if_it_had_not_co
     let press = Press {
         place_mm: DVec2::new(3.0, -1.0),
         depth_mm: 1.5,
-        spin_rad: 0.0,
+        yaw_rad: 0.0,
     };
     let good = read(0, &press).0;
     let (mut tracker, mut other) = (KNOWN.start(), KNOWN.start());

@@ -4,7 +4,7 @@ use digitac::Twin;
 use rayon::prelude::*;
 use twintac_fast::{Body, FastGel, Touch};
 
-use crate::Imperfection;
+use crate::SensorVariation;
 use crate::chunk::{Chunk, Moment};
 use crate::sensor::Sensor;
 use crate::state::SensorState;
@@ -22,7 +22,7 @@ pub fn most_sensors(n_taxels: usize) -> usize {
 /// Bodies are felt without friction and loss; [`CoupledBatch`](crate::CoupledBatch) has both.
 #[derive(Clone, Debug)]
 pub struct SensorBatch {
-    imperfection: Imperfection,
+    variation: SensorVariation,
     seed: u64,
     n_taxels: usize,
     pub(crate) chunks: Vec<Chunk>,
@@ -44,7 +44,7 @@ impl SensorBatch {
     pub fn new(
         gel: &FastGel,
         twin: Option<&Twin>,
-        imperfection: Imperfection,
+        variation: SensorVariation,
         [n_sensors, n_threads]: [usize; 2],
         seed: u64,
     ) -> Self {
@@ -63,13 +63,13 @@ impl SensorBatch {
         let chunk = |first: usize| {
             let numbers = first as u64..(first + of_chunk).min(n_sensors) as u64;
             let sensors = numbers
-                .map(|number| Sensor::draw(&imperfection, n_taxels, seed, number))
+                .map(|number| Sensor::draw(&variation, n_taxels, seed, number))
                 .collect();
             Chunk::new(sensors, reader.clone(), twin)
         };
         Self {
             chunks: (0..n_sensors).step_by(of_chunk).map(chunk).collect(),
-            imperfection,
+            variation,
             seed,
             n_taxels,
             of_chunk,
@@ -93,7 +93,7 @@ impl SensorBatch {
     #[must_use]
     pub fn into_parts(self) -> Vec<Self> {
         let part = |chunk: Chunk| Self {
-            imperfection: self.imperfection.clone(),
+            variation: self.variation.clone(),
             seed: self.seed,
             n_taxels: self.n_taxels,
             of_chunk: self.of_chunk,
@@ -134,10 +134,10 @@ impl SensorBatch {
         self.each(
             readings_kpa,
             wrench,
-            |imperfection, chunk, first, readings_kpa, wrench| {
+            |variation, chunk, first, readings_kpa, wrench| {
                 chunk.read(&moment, first, wrench);
                 chunk.stiffen(wrench);
-                chunk.sense(imperfection, since_previous_s, readings_kpa);
+                chunk.sense(variation, since_previous_s, readings_kpa);
             },
         );
     }
@@ -147,19 +147,19 @@ impl SensorBatch {
         &mut self,
         readings_kpa: &mut [f32],
         wrench: &mut [[f32; 6]],
-        work: impl Fn(&Imperfection, &mut Chunk, usize, &mut [f32], &mut [[f32; 6]]) + Sync,
+        work: impl Fn(&SensorVariation, &mut Chunk, usize, &mut [f32], &mut [[f32; 6]]) + Sync,
     ) {
-        let (imperfection, of_chunk) = (&self.imperfection, self.of_chunk);
+        let (variation, of_chunk) = (&self.variation, self.of_chunk);
         if let [chunk] = self.chunks.as_mut_slice() {
             // A single thread does not need the thread pool.
-            work(imperfection, chunk, 0, readings_kpa, wrench);
+            work(variation, chunk, 0, readings_kpa, wrench);
             return;
         }
         let readings = readings_kpa.par_chunks_mut(of_chunk * self.n_taxels);
         let numbers = readings.zip(wrench.par_chunks_mut(of_chunk));
         let chunks = self.chunks.par_iter_mut().zip(numbers).enumerate();
         chunks.for_each(|(number, (chunk, (readings_kpa, wrench)))| {
-            work(imperfection, chunk, number * of_chunk, readings_kpa, wrench);
+            work(variation, chunk, number * of_chunk, readings_kpa, wrench);
         });
     }
 
@@ -194,15 +194,15 @@ impl SensorBatch {
             self.n_sensors() * self.n_taxels,
             "a reading for each taxel of each sensor"
         );
-        let imperfection = &self.imperfection;
+        let variation = &self.variation;
         if let [chunk] = self.chunks.as_mut_slice() {
             // A single thread does not need the thread pool.
-            chunk.sense(imperfection, since_previous_s, readings_kpa);
+            chunk.sense(variation, since_previous_s, readings_kpa);
             return;
         }
         let readings = readings_kpa.par_chunks_mut(self.of_chunk * self.n_taxels);
         let work = self.chunks.par_iter_mut().zip(readings);
-        work.for_each(|(chunk, readings_kpa)| chunk.sense(imperfection, since_previous_s, readings_kpa));
+        work.for_each(|(chunk, readings_kpa)| chunk.sense(variation, since_previous_s, readings_kpa));
     }
 
     /// What sensors without variation would have delivered in the last step, kPa: the pressures at
@@ -235,7 +235,7 @@ impl SensorBatch {
     /// # Panics
     /// If there is no such sensor.
     pub fn replace(&mut self, sensor: usize, number: u64) {
-        let drawn = Sensor::draw(&self.imperfection, self.n_taxels, self.seed, number);
+        let drawn = Sensor::draw(&self.variation, self.n_taxels, self.seed, number);
         let (chunk, own) = self.place(sensor);
         self.chunks[chunk].replace(own, drawn);
     }

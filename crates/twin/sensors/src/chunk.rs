@@ -8,7 +8,7 @@ use twintac_shape::Pose;
 use crate::hold::{Holding, Holds};
 use crate::sensor::Sensor;
 use crate::state::SensorState;
-use crate::{Coupling, HeldTouch, Imperfection};
+use crate::{Coupling, HeldTouch, SensorVariation};
 
 /// The sensors of one thread.
 #[derive(Clone, Debug)]
@@ -115,7 +115,7 @@ impl Chunk {
     /// Computes the readings from the pressures of the gels.
     pub(crate) fn sense(
         &mut self,
-        imperfection: &Imperfection,
+        variation: &SensorVariation,
         since_previous_s: f64,
         readings_kpa: &mut [f32],
     ) {
@@ -134,7 +134,7 @@ impl Chunk {
             .chunks_exact(n_taxels)
             .zip(readings_kpa.chunks_exact_mut(n_taxels));
         for (sensor, (true_kpa, readings_kpa)) in self.sensors.iter_mut().zip(taxels) {
-            sensor.step(imperfection, since_previous_s, true_kpa, readings_kpa);
+            sensor.step(variation, since_previous_s, true_kpa, readings_kpa);
         }
     }
 

@@ -87,11 +87,11 @@ impl CoupledBatch {
         self.batch.each(
             readings_kpa,
             wrench,
-            |imperfection, chunk, first, readings_kpa, wrench| {
+            |variation, chunk, first, readings_kpa, wrench| {
                 chunk.read(&moment, first, wrench);
                 chunk.hold(&moment, first, coupling, wrench);
                 chunk.stiffen(wrench);
-                chunk.sense(imperfection, since_previous_s, readings_kpa);
+                chunk.sense(variation, since_previous_s, readings_kpa);
             },
         );
         Ok(())

@@ -6,10 +6,10 @@
 //!
 //! - [`SensorBatch`]: sensors of one kind. The surrogate of the gel gives the pressures at the
 //!   ports. A trained twin, if there is one, adds its gains, static nonlinearity of the ports and
-//!   viscoelastic relaxation. [`Imperfection`] adds what differs from sensor to sensor.
+//!   viscoelastic relaxation. [`SensorVariation`] adds what differs from sensor to sensor.
 //! - [`CoupledBatch`]: the same, with friction and loss between bodies and gels ([`Coupling`]), for
 //!   bodies that move freely.
-//! - [`Imperfection`]: the sensor variation: the distributions from which each sensor's deviations
+//! - [`SensorVariation`]: the sensor variation: the distributions from which each sensor's deviations
 //!   are drawn, read from TOML.
 //! - [`SensorState`]: everything of one sensor that a step changes.
 //!
@@ -30,7 +30,7 @@
 //! coupled, hold CoupledBatch, and what gels hold between steps
 //! chunk         the sensors of one thread
 //! sensor        the drawn deviations of one sensor, and how they change its readings
-//! imperfection  the distributions, and their file
+//! variation  the distributions, and their file
 //! state         the state of one sensor
 //! ```
 //!
@@ -52,12 +52,12 @@ mod batch;
 mod chunk;
 mod coupled;
 mod hold;
-mod imperfection;
 mod sensor;
 mod state;
+mod variation;
 
 pub use batch::{SensorBatch, most_sensors};
 pub use coupled::{CoupledBatch, TouchedTwice};
 pub use hold::{Coupling, HeldTouch, TouchId};
-pub use imperfection::Imperfection;
 pub use state::SensorState;
+pub use variation::SensorVariation;

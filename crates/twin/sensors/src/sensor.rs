@@ -5,7 +5,7 @@ use rand::Rng;
 use twintac_random::{RandomStream, normal, stream};
 use twintac_shape::Pose;
 
-use crate::Imperfection;
+use crate::SensorVariation;
 
 /// Smallest time between two frames, as a fraction of the mean one.
 const SHORTEST_FRAME: f64 = 0.1;
@@ -56,27 +56,27 @@ enum Fate {
 impl Sensor {
     /// Draws the sensor of a number. The same seed and number give the same sensor, whatever other
     /// sensors there are.
-    pub(crate) fn draw(imperfection: &Imperfection, n_taxels: usize, seed: u64, number: u64) -> Self {
+    pub(crate) fn draw(variation: &SensorVariation, n_taxels: usize, seed: u64, number: u64) -> Self {
         let mut random = stream(seed, &format!("sensor {number}"));
         let mut turn = |deviation_rad: f64| normal(&mut random, deviation_rad);
-        let tilt = imperfection.tilt_deviation_rad;
-        let axis = DVec3::new(turn(tilt), turn(tilt), turn(imperfection.turn_deviation_rad));
+        let tilt = variation.tilt_deviation_rad;
+        let axis = DVec3::new(turn(tilt), turn(tilt), turn(variation.turn_deviation_rad));
         let rotation = DQuat::from_scaled_axis(axis).normalize();
-        let mut place = || normal(&mut random, imperfection.place_deviation_mm);
+        let mut place = || normal(&mut random, variation.place_deviation_mm);
         let (x_mm, y_mm) = (place(), place());
-        let position_mm = DVec3::new(x_mm, y_mm, normal(&mut random, imperfection.height_deviation_mm));
+        let position_mm = DVec3::new(x_mm, y_mm, normal(&mut random, variation.height_deviation_mm));
         let taxels = (0..n_taxels)
-            .map(|_| Taxel::draw(imperfection, &mut random))
+            .map(|_| Taxel::draw(variation, &mut random))
             .collect();
-        let temperature_k = normal(&mut random, imperfection.temperature_deviation_k);
+        let temperature_k = normal(&mut random, variation.temperature_deviation_k);
         Self {
             taxels,
-            couplings: couplings(imperfection, n_taxels, &mut random),
+            couplings: couplings(variation, n_taxels, &mut random),
             actual_from_described: Pose {
                 position_mm,
                 rotation,
             },
-            modulus: modulus(imperfection, seed, number),
+            modulus: modulus(variation, seed, number),
             temperature_k,
             until_frame_s: 0.0,
             since_frame_s: 0.0,
@@ -87,7 +87,7 @@ impl Sensor {
     /// One step: from the reading of an ideal sensor, kPa, to what the bus delivers. `[n_taxels]`
     pub(crate) fn step(
         &mut self,
-        imperfection: &Imperfection,
+        variation: &SensorVariation,
         since_previous_s: f64,
         true_kpa: &[f64],
         readings_kpa: &mut [f32],
@@ -102,18 +102,18 @@ impl Sensor {
             (self.until_frame_s, self.since_frame_s) = (0.0, 0.0);
         }
         // A frame is not lost by rounding.
-        let is_frame = imperfection.rate_hz == 0.0 || self.until_frame_s <= 1e-9;
+        let is_frame = variation.rate_hz == 0.0 || self.until_frame_s <= 1e-9;
         if is_frame {
-            self.wander(imperfection);
-            self.wait(imperfection);
+            self.wander(variation);
+            self.wait(variation);
         }
         for (taxel, true_kpa) in self.taxels.iter_mut().zip(true_kpa) {
-            taxel.lag(imperfection.hysteresis, *true_kpa);
+            taxel.lag(variation.hysteresis, *true_kpa);
         }
         for (number, reading_kpa) in readings_kpa.iter_mut().enumerate().take(self.taxels.len()) {
             if is_frame {
                 let through_kpa = self.taxels[number].behind_kpa + self.cross_talk_kpa(number);
-                self.taxels[number].deliver(imperfection, through_kpa, self.temperature_k, &mut self.random);
+                self.taxels[number].deliver(variation, through_kpa, self.temperature_k, &mut self.random);
             }
             *reading_kpa = self.taxels[number].delivered_kpa.unwrap_or(0.0) as f32;
         }
@@ -127,27 +127,27 @@ impl Sensor {
     }
 
     /// Changes the temperature: an Ornstein-Uhlenbeck process, exact for any time step.
-    fn wander(&mut self, imperfection: &Imperfection) {
-        if imperfection.temperature_deviation_k > 0.0 {
-            let kept = (-self.since_frame_s / imperfection.temperature_time_s).exp();
-            let new_k = imperfection.temperature_deviation_k * (1.0 - kept * kept).max(0.0).sqrt();
+    fn wander(&mut self, variation: &SensorVariation) {
+        if variation.temperature_deviation_k > 0.0 {
+            let kept = (-self.since_frame_s / variation.temperature_time_s).exp();
+            let new_k = variation.temperature_deviation_k * (1.0 - kept * kept).max(0.0).sqrt();
             self.temperature_k = kept * self.temperature_k + normal(&mut self.random, new_k);
         }
         self.since_frame_s = 0.0;
     }
 
     /// Draws the time until the next frame.
-    fn wait(&mut self, imperfection: &Imperfection) {
-        if imperfection.rate_hz > 0.0 {
-            let jitter = if imperfection.jitter > 0.0 {
-                normal(&mut self.random, imperfection.jitter)
+    fn wait(&mut self, variation: &SensorVariation) {
+        if variation.rate_hz > 0.0 {
+            let jitter = if variation.jitter > 0.0 {
+                normal(&mut self.random, variation.jitter)
             } else {
                 0.0
             };
             // A late frame does not delay the next one; of several missed frames only one is made
             // up for.
-            let late_s = self.until_frame_s.max(-1.0 / imperfection.rate_hz);
-            self.until_frame_s = late_s + (1.0 + jitter).max(SHORTEST_FRAME) / imperfection.rate_hz;
+            let late_s = self.until_frame_s.max(-1.0 / variation.rate_hz);
+            self.until_frame_s = late_s + (1.0 + jitter).max(SHORTEST_FRAME) / variation.rate_hz;
         }
     }
 
@@ -166,12 +166,12 @@ impl Sensor {
 
 /// Cross-talk of each pair of taxels; empty without cross-talk, so that no random numbers are drawn
 /// and the other deviations stay the same.
-fn couplings(imperfection: &Imperfection, n_taxels: usize, random: &mut RandomStream) -> Vec<f64> {
-    let Imperfection {
+fn couplings(variation: &SensorVariation, n_taxels: usize, random: &mut RandomStream) -> Vec<f64> {
+    let SensorVariation {
         cross_talk,
         cross_talk_deviation,
         ..
-    } = *imperfection;
+    } = *variation;
     if cross_talk == 0.0 && cross_talk_deviation == 0.0 {
         return Vec::new();
     }
@@ -185,18 +185,18 @@ fn couplings(imperfection: &Imperfection, n_taxels: usize, random: &mut RandomSt
 
 /// Draws the gel's relative modulus, from random numbers of its own: the other deviations do not
 /// depend on it.
-fn modulus(imperfection: &Imperfection, seed: u64, number: u64) -> f32 {
+fn modulus(variation: &SensorVariation, seed: u64, number: u64) -> f32 {
     let mut random = stream(seed, &format!("gel {number}"));
-    normal(&mut random, imperfection.modulus_deviation).exp() as f32
+    normal(&mut random, variation.modulus_deviation).exp() as f32
 }
 
 impl Taxel {
-    fn draw(imperfection: &Imperfection, random: &mut RandomStream) -> Self {
+    fn draw(variation: &SensorVariation, random: &mut RandomStream) -> Self {
         let chance: f64 = random.random();
         let [dead, stuck, late] = [
-            imperfection.dead_chance,
-            imperfection.stuck_chance,
-            imperfection.late_chance,
+            variation.dead_chance,
+            variation.stuck_chance,
+            variation.late_chance,
         ];
         Self {
             fate: if chance < dead {
@@ -208,12 +208,11 @@ impl Taxel {
             } else {
                 Fate::Fine
             },
-            gain: 1.0 + normal(random, imperfection.gain_deviation),
-            offset_kpa: normal(random, imperfection.offset_deviation_kpa),
-            drift_kpa_per_k: imperfection.drift_kpa_per_k
-                + normal(random, imperfection.drift_deviation_kpa_per_k),
-            growth_per_kpa: if imperfection.growth_deviation_per_kpa > 0.0 {
-                normal(random, imperfection.growth_deviation_per_kpa)
+            gain: 1.0 + normal(random, variation.gain_deviation),
+            offset_kpa: normal(random, variation.offset_deviation_kpa),
+            drift_kpa_per_k: variation.drift_kpa_per_k + normal(random, variation.drift_deviation_kpa_per_k),
+            growth_per_kpa: if variation.growth_deviation_per_kpa > 0.0 {
+                normal(random, variation.growth_deviation_per_kpa)
             } else {
                 0.0
             },
@@ -232,7 +231,7 @@ impl Taxel {
 
     fn deliver(
         &mut self,
-        imperfection: &Imperfection,
+        variation: &SensorVariation,
         through_kpa: f64,
         temperature_k: f64,
         random: &mut RandomStream,
@@ -240,11 +239,11 @@ impl Taxel {
         let drift_kpa = self.drift_kpa_per_k * temperature_k;
         let growth = (1.0 + self.growth_per_kpa * through_kpa.abs()).max(0.0);
         let mut reading_kpa = self.gain * growth * through_kpa + self.offset_kpa + drift_kpa;
-        if imperfection.noise_deviation_kpa > 0.0 {
-            reading_kpa += normal(random, imperfection.noise_deviation_kpa);
+        if variation.noise_deviation_kpa > 0.0 {
+            reading_kpa += normal(random, variation.noise_deviation_kpa);
         }
-        if imperfection.quantum_kpa > 0.0 {
-            reading_kpa = imperfection.quantum_kpa * (reading_kpa / imperfection.quantum_kpa).round();
+        if variation.quantum_kpa > 0.0 {
+            reading_kpa = variation.quantum_kpa * (reading_kpa / variation.quantum_kpa).round();
         }
         let before_kpa = std::mem::replace(&mut self.before_kpa, reading_kpa);
         self.delivered_kpa = Some(match self.fate {
@@ -262,18 +261,18 @@ mod tests {
 
     #[test]
     fn a_turn_is_upright_and_a_tilt_is_not() {
-        let axis = |imperfection: &Imperfection| {
-            let drawn = Sensor::draw(imperfection, 1, 1, 0);
+        let axis = |variation: &SensorVariation| {
+            let drawn = Sensor::draw(variation, 1, 1, 0);
             drawn.actual_from_described.rotation.to_scaled_axis()
         };
-        let turned = axis(&Imperfection {
+        let turned = axis(&SensorVariation {
             turn_deviation_rad: 0.1,
-            ..Imperfection::default()
+            ..SensorVariation::default()
         });
         assert!(turned.z != 0.0 && turned.truncate().length() == 0.0, "{turned}");
-        let tilted = axis(&Imperfection {
+        let tilted = axis(&SensorVariation {
             tilt_deviation_rad: 0.1,
-            ..Imperfection::default()
+            ..SensorVariation::default()
         });
         assert!(tilted.z == 0.0 && tilted.x != 0.0 && tilted.y != 0.0, "{tilted}");
     }

@@ -5,7 +5,9 @@
 use glam::DVec3;
 use twintac_fast::{Body, FastGel, Friction, Touch};
 use twintac_sensor::SensorFile;
-use twintac_sensors::{CoupledBatch, Coupling, HeldTouch, Imperfection, SensorBatch, TouchId, TouchedTwice};
+use twintac_sensors::{
+    CoupledBatch, Coupling, HeldTouch, SensorBatch, SensorVariation, TouchId, TouchedTwice,
+};
 use twintac_shape::{Pose, Shape, Surfaces};
 
 const TOP_MM: f64 = 8.5;
@@ -16,17 +18,17 @@ fn balls() -> Vec<Body> {
 }
 
 fn sensors(n: usize, n_threads: usize, retardation_s: f64) -> CoupledBatch {
-    imperfect(Imperfection::default(), [n, n_threads], retardation_s)
+    imperfect(SensorVariation::default(), [n, n_threads], retardation_s)
 }
 
-fn imperfect(imperfection: Imperfection, sizes: [usize; 2], retardation_s: f64) -> CoupledBatch {
+fn imperfect(variation: SensorVariation, sizes: [usize; 2], retardation_s: f64) -> CoupledBatch {
     let sensor = SensorFile::phystac().unwrap().sensor;
     let coupling = Coupling {
         friction: Friction::on(&sensor, 0.8),
         retardation_s,
     };
     let gel = FastGel::phystac().unwrap();
-    SensorBatch::new(&gel, None, imperfection, sizes, 1)
+    SensorBatch::new(&gel, None, variation, sizes, 1)
         .with_coupling(coupling)
         .unwrap()
 }
@@ -115,12 +117,12 @@ fn several_bodies_share_the_force() {
 
 #[test]
 fn a_stiffer_gel_holds_each_body_with_more_force_by_the_same_factor() {
-    let stiff = Imperfection {
+    let stiff = SensorVariation {
         modulus_deviation: 5.0,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
-    let [soft, stiff] = [Imperfection::default(), stiff].map(|imperfection| {
-        let mut batch = imperfect(imperfection, [1, 1], 0.005);
+    let [soft, stiff] = [SensorVariation::default(), stiff].map(|variation| {
+        let mut batch = imperfect(variation, [1, 1], 0.005);
         step(&mut batch, &[at(0, -8.0, 0.0, 1.0), at(1, 8.0, 0.0, 1.5)]);
         // One sticks, one slips.
         let (readings_kpa, wrench) = step(&mut batch, &[at(0, -7.9, 0.0, 1.1), at(1, 6.0, 0.0, 1.5)]);
@@ -292,7 +294,7 @@ fn another_look_at_a_moment_finds_the_same() {
 
 #[test]
 fn a_sensor_goes_on_from_its_state_to_the_same_bits() {
-    let imperfection = || Imperfection {
+    let variation = || SensorVariation {
         noise_deviation_kpa: 0.1,
         hysteresis: 0.05,
         temperature_deviation_k: 2.0,
@@ -301,9 +303,9 @@ fn a_sensor_goes_on_from_its_state_to_the_same_bits() {
         rate_hz: 60.0,
         jitter: 0.1,
         late_chance: 0.3,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
-    let mut batch = imperfect(imperfection(), [1, 1], 0.005);
+    let mut batch = imperfect(variation(), [1, 1], 0.005);
     let way = |moment: u32| {
         let along_mm = 0.1 * f64::from(moment);
         [
@@ -322,7 +324,7 @@ fn a_sensor_goes_on_from_its_state_to_the_same_bits() {
     batch.set_state(0, &state);
     assert_eq!(first, go_on(&mut batch));
     // Also in another sensor of a batch.
-    let mut others = imperfect(imperfection(), [2, 2], 0.005);
+    let mut others = imperfect(variation(), [2, 2], 0.005);
     others.set_state(1, &state);
     let replayed: Vec<_> = (20..40)
         .map(|moment| {

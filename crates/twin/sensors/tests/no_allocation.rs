@@ -6,7 +6,7 @@ use digitac::Variant;
 use glam::{DQuat, DVec3};
 use twintac_fast::{Body, FastGel, Friction, Touch};
 use twintac_sensor::SensorFile;
-use twintac_sensors::{Coupling, HeldTouch, Imperfection, SensorBatch, TouchId};
+use twintac_sensors::{Coupling, HeldTouch, SensorBatch, SensorVariation, TouchId};
 use twintac_shape::{Pose, Shape, Surfaces};
 
 #[path = "../examples/rate/counting.rs"]
@@ -18,8 +18,8 @@ mod invented;
 const N_TAXELS: usize = 8;
 const N_SENSORS: usize = 100;
 
-fn imperfection() -> Imperfection {
-    Imperfection {
+fn variation() -> SensorVariation {
+    SensorVariation {
         gain_deviation: 0.05,
         drift_deviation_kpa_per_k: 0.05,
         temperature_deviation_k: 2.0,
@@ -32,7 +32,7 @@ fn imperfection() -> Imperfection {
         place_deviation_mm: 0.3,
         turn_deviation_rad: 0.01,
         tilt_deviation_rad: 0.01,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     }
 }
 
@@ -66,7 +66,7 @@ fn steps_allocate_nothing() {
 
     let mut counted = |n_threads: usize| {
         let sizes = [N_SENSORS, n_threads];
-        let mut batch = SensorBatch::new(&gel, Some(&twin), imperfection(), sizes, 1);
+        let mut batch = SensorBatch::new(&gel, Some(&twin), variation(), sizes, 1);
         let mut step = |touches: &[Touch]| {
             batch.step(0.01, &bodies, touches, &ends, &mut readings_kpa, &mut wrench);
         };
@@ -95,7 +95,7 @@ fn steps_allocate_nothing() {
     };
     let held_steps: Vec<Vec<HeldTouch>> = steps.iter().map(held).collect();
     let counted_holding = || {
-        let batch = SensorBatch::new(&gel, Some(&twin), imperfection(), [N_SENSORS, 1], 1);
+        let batch = SensorBatch::new(&gel, Some(&twin), variation(), [N_SENSORS, 1], 1);
         let mut batch = batch.with_coupling(coupling.clone()).unwrap();
         let (mut readings_kpa, mut wrench) = (vec![0.0; N_SENSORS * N_TAXELS], vec![[0.0; 6]; N_SENSORS]);
         let mut step = |touches: &[HeldTouch]| {

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use twintac_fast::{Body, FastGel, Touch};
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_sensors::{SensorBatch, SensorVariation};
 use twintac_shape::{Pose, Shape, Surfaces};
 
 const N_TAXELS: usize = 8;
@@ -24,14 +24,14 @@ fn touch(x_mm: f64, depth_mm: f64) -> Touch {
 
 /// Readings of every step. `[n_steps][n_sensors * n_taxels]`
 fn readings(
-    imperfection: &Imperfection,
+    variation: &SensorVariation,
     n_sensors: usize,
     n_threads: usize,
     seed: u64,
     depth_mm: &[f64],
 ) -> Vec<Vec<f32>> {
     let gel = FastGel::phystac().unwrap();
-    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [n_sensors, n_threads], seed);
+    let mut batch = SensorBatch::new(&gel, None, variation.clone(), [n_sensors, n_threads], seed);
     assert_eq!(batch.n_sensors(), n_sensors);
     let ends: Vec<usize> = (1..=n_sensors).collect();
     let bodies = ball();
@@ -44,8 +44,8 @@ fn readings(
     depth_mm.iter().map(step).collect()
 }
 
-fn all_imperfections() -> Imperfection {
-    Imperfection {
+fn all_variations() -> SensorVariation {
+    SensorVariation {
         gain_deviation: 0.05,
         growth_deviation_per_kpa: 0.01,
         offset_deviation_kpa: 0.2,
@@ -81,9 +81,9 @@ proptest! {
         n_threads in 1..5_usize,
         depth_mm in prop::collection::vec(-0.5..3.0_f64, 1..8),
     ) {
-        let imperfection = all_imperfections();
-        let many = readings(&imperfection, n_sensors, n_threads, seed, &depth_mm);
-        let few = readings(&imperfection, n_sensors / 2 + 1, 1, seed, &depth_mm);
+        let variation = all_variations();
+        let many = readings(&variation, n_sensors, n_threads, seed, &depth_mm);
+        let few = readings(&variation, n_sensors / 2 + 1, 1, seed, &depth_mm);
         for (many, few) in many.iter().zip(&few) {
             prop_assert_eq!(&many[..few.len()], &few[..]);
         }
@@ -92,7 +92,7 @@ proptest! {
 
 #[test]
 fn a_perfect_sensor_reads_the_pressure() {
-    let found = readings(&Imperfection::default(), 1, 1, 1, &[1.0]);
+    let found = readings(&SensorVariation::default(), 1, 1, 1, &[1.0]);
     let (mut pressure_kpa, mut wrench) = ([0.0; N_TAXELS], [0.0; 6]);
     let touch = touch(2.0, 1.0);
     FastGel::phystac().unwrap().reader().read(
@@ -110,41 +110,41 @@ fn widths_are_those_that_were_asked_for() {
         let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
         (square / values.len() as f64).sqrt()
     };
-    let untouched = |imperfection: Imperfection| -> Vec<f64> {
-        let found = readings(&imperfection, 500, 1, 3, &[-5.0]);
+    let untouched = |variation: SensorVariation| -> Vec<f64> {
+        let found = readings(&variation, 500, 1, 3, &[-5.0]);
         found[0].iter().map(|reading| f64::from(*reading)).collect()
     };
-    for (imperfection, expected) in [
+    for (variation, expected) in [
         (
-            Imperfection {
+            SensorVariation {
                 offset_deviation_kpa: 0.4,
-                ..Imperfection::default()
+                ..SensorVariation::default()
             },
             0.4,
         ),
         (
-            Imperfection {
+            SensorVariation {
                 noise_deviation_kpa: 0.2,
-                ..Imperfection::default()
+                ..SensorVariation::default()
             },
             0.2,
         ),
     ] {
-        let found = deviation(&untouched(imperfection));
+        let found = deviation(&untouched(variation));
         assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
     }
-    let quantized = untouched(Imperfection {
+    let quantized = untouched(SensorVariation {
         noise_deviation_kpa: 0.5,
         quantum_kpa: 0.25,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     });
     assert!(quantized.iter().all(|reading| (reading * 4.0).fract() == 0.0));
-    let dead = Imperfection {
+    let dead = SensorVariation {
         dead_chance: 0.2,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     let touched = readings(&dead, 500, 1, 3, &[2.0]);
-    let perfect = readings(&Imperfection::default(), 500, 1, 3, &[2.0]);
+    let perfect = readings(&SensorVariation::default(), 500, 1, 3, &[2.0]);
     let felt = || {
         touched[0]
             .iter()
@@ -157,11 +157,11 @@ fn widths_are_those_that_were_asked_for() {
 
 #[test]
 fn all_taxels_drift_alike_and_grow_in_their_own_way() {
-    let warm = Imperfection {
+    let warm = SensorVariation {
         drift_kpa_per_k: -0.5,
         temperature_deviation_k: 2.0,
         temperature_time_s: 60.0,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     let found = readings(&warm, 500, 1, 3, &[-5.0]);
     let sensors: Vec<&[f32]> = found[0].chunks(N_TAXELS).collect();
@@ -175,12 +175,12 @@ fn all_taxels_drift_alike_and_grow_in_their_own_way() {
         .map(|taxels| f64::from(taxels[0]).powi(2))
         .sum::<f64>();
     assert!(((square / 500.0).sqrt() - 1.0).abs() < 0.1, "{square}");
-    let growing = Imperfection {
+    let growing = SensorVariation {
         growth_deviation_per_kpa: 0.01,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     let depths_mm = [1.0, 2.0];
-    let perfect = readings(&Imperfection::default(), 1, 1, 3, &depths_mm);
+    let perfect = readings(&SensorVariation::default(), 1, 1, 3, &depths_mm);
     let found = readings(&growing, 1, 1, 3, &depths_mm);
     for taxel in 0..N_TAXELS {
         let per_kpa = [0, 1].map(|step: usize| {
@@ -201,11 +201,11 @@ fn a_stiffer_gel_presses_back_and_reads_more_by_the_same_factor() {
     let gel = FastGel::phystac().unwrap();
     let n_sensors = 300;
     let [perfect, stiff] = [0.0, 0.4].map(|modulus_deviation| {
-        let imperfection = Imperfection {
+        let variation = SensorVariation {
             modulus_deviation,
-            ..Imperfection::default()
+            ..SensorVariation::default()
         };
-        let mut batch = SensorBatch::new(&gel, None, imperfection, [n_sensors, 1], 3);
+        let mut batch = SensorBatch::new(&gel, None, variation, [n_sensors, 1], 3);
         let (mut readings_kpa, mut wrench) = (vec![0.0; n_sensors * N_TAXELS], vec![[0.0; 6]; n_sensors]);
         let ends: Vec<usize> = (1..=n_sensors).collect();
         let touches = vec![touch(2.0, 1.5); n_sensors];
@@ -231,12 +231,12 @@ fn a_stiffer_gel_presses_back_and_reads_more_by_the_same_factor() {
 
 #[test]
 fn a_part_of_what_the_others_feel_is_read_too() {
-    let talking = |cross_talk: f64, cross_talk_deviation: f64| Imperfection {
+    let talking = |cross_talk: f64, cross_talk_deviation: f64| SensorVariation {
         cross_talk,
         cross_talk_deviation,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
-    let perfect = &readings(&Imperfection::default(), 1, 1, 3, &[1.5])[0];
+    let perfect = &readings(&SensorVariation::default(), 1, 1, 3, &[1.5])[0];
     let all_kpa: f32 = perfect.iter().sum();
     let found = &readings(&talking(0.1, 0.0), 1, 1, 3, &[1.5])[0];
     for (found_kpa, perfect_kpa) in found.iter().zip(perfect) {
@@ -270,11 +270,11 @@ fn a_part_of_what_the_others_feel_is_read_too() {
 
 #[test]
 fn unloading_reads_more_than_loading() {
-    let hysteresis = Imperfection {
+    let hysteresis = SensorVariation {
         hysteresis: 0.1,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
-    let perfect = readings(&Imperfection::default(), 1, 1, 1, &[1.0, 2.0, 1.0]);
+    let perfect = readings(&SensorVariation::default(), 1, 1, 1, &[1.0, 2.0, 1.0]);
     let found = readings(&hysteresis, 1, 1, 1, &[1.0, 2.0, 1.0]);
     for taxel in 0..N_TAXELS {
         let (perfect_kpa, [up, down]) = (perfect[0][taxel], [0, 2].map(|step: usize| found[step][taxel]));
@@ -287,19 +287,19 @@ fn unloading_reads_more_than_loading() {
 
 #[test]
 fn a_slow_bus_repeats_and_a_late_taxel_is_a_frame_behind() {
-    let slow = Imperfection {
+    let slow = SensorVariation {
         rate_hz: 50.0,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     let depths_mm = [1.0, 1.2, 1.4, 1.6, 1.8];
-    let perfect = readings(&Imperfection::default(), 1, 1, 1, &depths_mm);
+    let perfect = readings(&SensorVariation::default(), 1, 1, 1, &depths_mm);
     let found = readings(&slow, 1, 1, 1, &depths_mm);
     for (step, delivered) in [0, 0, 2, 2, 4].into_iter().enumerate() {
         assert_eq!(found[step], perfect[delivered], "step {step}");
     }
-    let late = Imperfection {
+    let late = SensorVariation {
         late_chance: 1.0,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     let found = readings(&late, 1, 1, 1, &depths_mm);
     assert_eq!(found[0], [0.0; N_TAXELS]);
@@ -322,13 +322,13 @@ fn the_ground_truth_has_no_variation() {
         );
         readings_kpa
     };
-    let noisy = Imperfection {
+    let noisy = SensorVariation {
         gain_deviation: 0.1,
         noise_deviation_kpa: 0.1,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     let mut imperfect = SensorBatch::new(&gel, None, noisy, [3, 2], 1);
-    let mut perfect = SensorBatch::new(&gel, None, Imperfection::default(), [3, 2], 1);
+    let mut perfect = SensorBatch::new(&gel, None, SensorVariation::default(), [3, 2], 1);
     let expected = step(&mut perfect);
     assert_ne!(step(&mut imperfect), expected);
     assert_eq!(imperfect.ground_truth_kpa().collect::<Vec<f32>>(), expected);
@@ -337,9 +337,9 @@ fn the_ground_truth_has_no_variation() {
 #[test]
 fn a_replaced_sensor_is_the_one_of_its_number() {
     let gel = FastGel::phystac().unwrap();
-    let (bodies, imperfection) = (ball(), all_imperfections());
-    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [3, 2], 9);
-    let mut other = SensorBatch::new(&gel, None, imperfection, [8, 1], 9);
+    let (bodies, variation) = (ball(), all_variations());
+    let mut batch = SensorBatch::new(&gel, None, variation.clone(), [3, 2], 9);
+    let mut other = SensorBatch::new(&gel, None, variation, [8, 1], 9);
     batch.replace(1, 7);
     let step = |batch: &mut SensorBatch| {
         let n = batch.n_sensors();
@@ -359,7 +359,7 @@ fn to_stay_is_to_be_touched_in_the_same_way() {
     let gel = FastGel::phystac().unwrap();
     let (bodies, touches, ends) = (ball(), vec![touch(2.0, 1.5); 3], [1, 2, 3]);
     let stepped = |n_threads: usize, stays: bool| {
-        let mut batch = SensorBatch::new(&gel, None, all_imperfections(), [3, n_threads], 5);
+        let mut batch = SensorBatch::new(&gel, None, all_variations(), [3, n_threads], 5);
         let (mut readings_kpa, mut wrench) = (vec![0.0; 3 * N_TAXELS], vec![[0.0; 6]; 3]);
         batch.step(0.01, &bodies, &touches, &ends, &mut readings_kpa, &mut wrench);
         for _ in 0..4 {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use twintac_fast::FastGel;
-use twintac_sensors::{Imperfection, SensorBatch, most_sensors};
+use twintac_sensors::{SensorBatch, SensorVariation, most_sensors};
 
 use crate::answers::{Answers, Autoreset};
 use crate::chunk::{Chunk, Steps};
@@ -30,14 +30,14 @@ pub struct Tasks {
 
 impl Tasks {
     /// Environments, distributed over threads. The seed of environment `n` is `n` until
-    /// [`Self::seed`] sets another. Each episode has another sensor, drawn from `imperfection`.
+    /// [`Self::seed`] sets another. Each episode has another sensor, drawn from `variation`.
     ///
     /// # Errors
     /// No environment, or more than [`most_sensors`].
     pub fn new(
         kind: Kind,
         gel: &FastGel,
-        imperfection: &Imperfection,
+        variation: &SensorVariation,
         [n_environments, n_threads]: [usize; 2],
         autoreset: Autoreset,
     ) -> Result<Self, TaskError> {
@@ -48,7 +48,7 @@ impl Tasks {
                 most,
             });
         }
-        let batch = SensorBatch::new(gel, None, imperfection.clone(), [n_environments, n_threads], 0);
+        let batch = SensorBatch::new(gel, None, variation.clone(), [n_environments, n_threads], 0);
         let sensors = batch.into_parts();
         match kind {
             Kind::ExploreShape => Self::of(ExploreShape::on(gel)?, gel, sensors, autoreset),

@@ -53,7 +53,7 @@ pub(crate) struct ExploreShape {
 pub(crate) struct Episode {
     shape: u32,
     place_mm: DVec2,
-    spin_rad: f64,
+    yaw_rad: f64,
     n_steps: usize,
     /// Location and depth of the last press, mm; the depth is negative in a step without a press.
     at_mm: DVec2,
@@ -127,13 +127,13 @@ impl Task for ExploreShape {
     fn begin(&self, n_taxels: usize, random: &mut RandomStream) -> Episode {
         let mut within = |most: f64| random.random_range(-most..most);
         let place_mm = DVec2::new(within(HIDDEN_MM.x), within(HIDDEN_MM.y));
-        let spin_rad = within(PI);
+        let yaw_rad = within(PI);
         let mut observed = vec![0.0; self.n_observed(n_taxels)];
         observed[N_PRESSES * (n_taxels + N_WHERE)] = 1.0;
         Episode {
             shape: random.random_range(0..N_SHAPES as u32),
             place_mm,
-            spin_rad,
+            yaw_rad,
             n_steps: 0,
             at_mm: DVec2::ZERO,
             depth_mm: -1.0,
@@ -167,7 +167,7 @@ impl Task for ExploreShape {
             body: episode.shape,
             gel_from_body: Pose {
                 position_mm: place_mm.extend(self.height_mm - episode.depth_mm),
-                rotation: DQuat::from_axis_angle(DVec3::Z, episode.spin_rad),
+                rotation: DQuat::from_axis_angle(DVec3::Z, episode.yaw_rad),
             },
         }
     }

@@ -70,7 +70,7 @@ pub(crate) struct Episode {
     /// Position of the object and of the sensor's middle in the robot's frame, mm; its origin is
     /// where the sensor begins.
     object_mm: DVec2,
-    spin_rad: f64,
+    yaw_rad: f64,
     at_mm: DVec2,
     moved_mm: f64,
     start_mm: f64,
@@ -117,7 +117,7 @@ impl FollowEdge {
     }
 
     fn nearest(&self, episode: &Episode) -> Nearest {
-        let in_body = DVec2::from_angle(-episode.spin_rad).rotate(episode.at_mm - episode.object_mm);
+        let in_body = DVec2::from_angle(-episode.yaw_rad).rotate(episode.at_mm - episode.object_mm);
         self.edges[episode.body as usize].nearest(in_body)
     }
 
@@ -149,14 +149,14 @@ impl Task for FollowEdge {
 
     fn begin(&self, _: usize, random: &mut RandomStream) -> Episode {
         let body = random.random_range(0..self.bodies.len());
-        let spin_rad = random.random_range(-PI..PI);
+        let yaw_rad = random.random_range(-PI..PI);
         let (edge_mm, outward) = self.edges[body].at(random.random());
         let start_mm = edge_mm + random.random_range(-BESIDE_MM..BESIDE_MM) * outward;
         let above_mm = random.random_range(ABOVE_MM[0]..ABOVE_MM[1]);
         let mut episode = Episode {
             body: body as u32,
-            object_mm: -DVec2::from_angle(spin_rad).rotate(start_mm),
-            spin_rad,
+            object_mm: -DVec2::from_angle(yaw_rad).rotate(start_mm),
+            yaw_rad,
             at_mm: DVec2::ZERO,
             moved_mm: 0.0,
             start_mm: -above_mm,
@@ -188,7 +188,7 @@ impl Task for FollowEdge {
             body: episode.body,
             gel_from_body: Pose {
                 position_mm: place_mm.extend(self.height_mm - episode.depth_mm),
-                rotation: DQuat::from_axis_angle(DVec3::Z, episode.spin_rad),
+                rotation: DQuat::from_axis_angle(DVec3::Z, episode.yaw_rad),
             },
         }
     }

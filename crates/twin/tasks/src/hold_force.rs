@@ -64,7 +64,7 @@ pub(crate) struct HoldForce {
 pub(crate) struct Episode {
     body: u32,
     place_mm: DVec2,
-    spin_rad: f64,
+    yaw_rad: f64,
     stiffness_n_per_mm: f64,
     wanted_n: [f64; N_WANTED],
     n_steps: usize,
@@ -127,13 +127,13 @@ impl Task for HoldForce {
     fn begin(&self, _: usize, random: &mut RandomStream) -> Episode {
         let mut within = |most: f64| random.random_range(-most..most);
         let place_mm = DVec2::new(within(PLACE_MM.x), within(PLACE_MM.y));
-        let spin_rad = within(std::f64::consts::PI);
+        let yaw_rad = within(std::f64::consts::PI);
         let body = random.random_range(0..self.bodies.len() as u32);
         let [low, high] = STIFFNESS_N_PER_MM.map(f64::ln);
         Episode {
             body,
             place_mm,
-            spin_rad,
+            yaw_rad,
             stiffness_n_per_mm: random.random_range(low..high).exp(),
             wanted_n: std::array::from_fn(|_| random.random_range(WANTED_N[0]..WANTED_N[1])),
             n_steps: 0,
@@ -164,7 +164,7 @@ impl Task for HoldForce {
             body: episode.body,
             gel_from_body: Pose {
                 position_mm: episode.place_mm.extend(self.height_mm - episode.depth_mm),
-                rotation: DQuat::from_axis_angle(DVec3::Z, episode.spin_rad),
+                rotation: DQuat::from_axis_angle(DVec3::Z, episode.yaw_rad),
             },
         }
     }

@@ -62,4 +62,4 @@ pub use answers::{Answers, Autoreset};
 pub use batch::Tasks;
 pub use kind::{Kind, TaskError};
 pub use picture::PICTURE_PX;
-pub use usual::usual_imperfection;
+pub use usual::usual_variation;

@@ -1,14 +1,14 @@
 //! The default sensor variation.
 
-use twintac_sensors::Imperfection;
+use twintac_sensors::SensorVariation;
 
 /// The default sensor variation, for sensors that work. Gains, static nonlinearity of the ports,
-/// noise, resolution and frame rate are those that `twintac fast imperfection` found on the
-/// emulated PhysTac (`imperfections/phystac.toml`). Assumed are a zero drift of a tenth of a kPa
+/// noise, resolution and frame rate are those that `twintac fast variation` found on the
+/// emulated PhysTac (`variations/phystac.toml`). Assumed are a zero drift of a tenth of a kPa
 /// since the tare, hysteresis, installation and faults.
 #[must_use]
-pub fn usual_imperfection() -> Imperfection {
-    Imperfection {
+pub fn usual_variation() -> SensorVariation {
+    SensorVariation {
         gain_deviation: 0.18,
         growth_deviation_per_kpa: 0.001_12,
         offset_deviation_kpa: 0.1,
@@ -24,6 +24,6 @@ pub fn usual_imperfection() -> Imperfection {
         place_deviation_mm: 0.2,
         turn_deviation_rad: 0.01,
         tilt_deviation_rad: 0.01,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     }
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
 use twintac_fast::FastGel;
-use twintac_tasks::{Answers, Autoreset, Kind, Tasks, usual_imperfection};
+use twintac_tasks::{Answers, Autoreset, Kind, Tasks, usual_variation};
 
 #[path = "../../sensors/examples/rate/counting.rs"]
 mod counting;
@@ -14,7 +14,7 @@ const N: usize = 64;
 fn counted(kind: Kind, n_threads: usize, [n_before, n_steps]: [usize; 2]) -> usize {
     let gel = FastGel::phystac().unwrap();
     let sizes = [N, n_threads];
-    let mut tasks = Tasks::new(kind, &gel, &usual_imperfection(), sizes, Autoreset::NextStep).unwrap();
+    let mut tasks = Tasks::new(kind, &gel, &usual_variation(), sizes, Autoreset::NextStep).unwrap();
     let actions = vec![0.05; N * tasks.n_actions()];
     let (n_observed, n_figures) = (N * tasks.n_observed(), N * tasks.figures().len());
     let (mut observed, mut last_observed) = (vec![0.0; n_observed], vec![0.0; n_observed]);

@@ -4,11 +4,11 @@
 
 use proptest::prelude::*;
 use twintac_fast::FastGel;
-use twintac_sensors::Imperfection;
+use twintac_sensors::SensorVariation;
 use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks};
 
-fn imperfection() -> Imperfection {
-    Imperfection {
+fn variation() -> SensorVariation {
+    SensorVariation {
         gain_deviation: 0.1,
         offset_deviation_kpa: 0.1,
         noise_deviation_kpa: 0.02,
@@ -20,7 +20,7 @@ fn imperfection() -> Imperfection {
         jitter: 0.04,
         height_deviation_mm: 0.05,
         tilt_deviation_rad: 0.01,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     }
 }
 
@@ -37,8 +37,8 @@ struct Driven {
 }
 
 impl Driven {
-    fn new(kind: Kind, imperfection: &Imperfection, sizes: [usize; 2], autoreset: Autoreset) -> Self {
-        let tasks = Tasks::new(kind, &FastGel::phystac().unwrap(), imperfection, sizes, autoreset).unwrap();
+    fn new(kind: Kind, variation: &SensorVariation, sizes: [usize; 2], autoreset: Autoreset) -> Self {
+        let tasks = Tasks::new(kind, &FastGel::phystac().unwrap(), variation, sizes, autoreset).unwrap();
         let n = tasks.n_environments();
         let (n_observed, n_figures) = (n * tasks.n_observed(), n * tasks.figures().len());
         Self {
@@ -109,10 +109,10 @@ proptest! {
         n_threads in 1..5_usize,
         seed in 0..1000_u64,
     ) {
-        let mut many = Driven::new(kind, &imperfection(), [n, n_threads], Autoreset::NextStep);
-        let mut few = Driven::new(kind, &imperfection(), [n / 2 + 1, 1], Autoreset::NextStep);
+        let mut many = Driven::new(kind, &variation(), [n, n_threads], Autoreset::NextStep);
+        let mut few = Driven::new(kind, &variation(), [n / 2 + 1, 1], Autoreset::NextStep);
         // The last environment of `turned` has the seed of the first one of the others.
-        let mut turned = Driven::new(kind, &imperfection(), [n, 2], Autoreset::NextStep);
+        let mut turned = Driven::new(kind, &variation(), [n, 2], Autoreset::NextStep);
         for environment in 0..n {
             many.tasks.seed(environment, seed + environment as u64);
             turned.tasks.seed(environment, seed + (n - 1 - environment) as u64);
@@ -148,8 +148,8 @@ fn episodes_are_the_same_however_the_next_one_begins() {
         (Kind::HoldForce, 700),
         (Kind::FollowEdge, 800),
     ] {
-        let mut next = Driven::new(kind, &imperfection(), [1, 1], Autoreset::NextStep);
-        let mut same = Driven::new(kind, &imperfection(), [1, 1], Autoreset::SameStep);
+        let mut next = Driven::new(kind, &variation(), [1, 1], Autoreset::NextStep);
+        let mut same = Driven::new(kind, &variation(), [1, 1], Autoreset::SameStep);
         let actions = vec![0.05; next.tasks.n_actions()];
         let mut ends = 0;
         for _ in 0..limit {
@@ -175,7 +175,7 @@ fn episodes_are_the_same_however_the_next_one_begins() {
 
 #[test]
 fn without_autoreset_an_episode_waits_for_a_reset() {
-    let mut driven = Driven::new(Kind::ExploreShape, &imperfection(), [2, 2], Autoreset::Disabled);
+    let mut driven = Driven::new(Kind::ExploreShape, &variation(), [2, 2], Autoreset::Disabled);
     for step in 0..5 {
         driven.step(step);
     }
@@ -191,7 +191,7 @@ fn without_autoreset_an_episode_waits_for_a_reset() {
 /// A seed gives the same episodes again, and other episodes than another seed.
 #[test]
 fn a_seed_repeats_its_episodes() {
-    let mut driven = Driven::new(Kind::HoldForce, &imperfection(), [1, 1], Autoreset::Disabled);
+    let mut driven = Driven::new(Kind::HoldForce, &variation(), [1, 1], Autoreset::Disabled);
     let (mut observed, mut figures) = (vec![0.0; driven.tasks.n_observed()], vec![0.0; 4]);
     let mut begin = |driven: &mut Driven, seed: Option<u64>| {
         if let Some(seed) = seed {
@@ -210,7 +210,7 @@ fn a_seed_repeats_its_episodes() {
 /// As the press goes deeper, the force grows, and the readings with it.
 #[test]
 fn a_body_that_is_pressed_on_is_felt_more_and_more() {
-    let perfect = Imperfection::default();
+    let perfect = SensorVariation::default();
     let mut driven = Driven::new(Kind::HoldForce, &perfect, [1, 1], Autoreset::Disabled);
     let (mut before_n, mut most_kpa) = (0.0, 0.0_f32);
     for step in 0..220 {
@@ -237,7 +237,7 @@ fn a_body_that_is_pressed_on_is_felt_more_and_more() {
 /// A press on a shape is felt by at least one taxel.
 #[test]
 fn a_shape_is_felt_where_it_is() {
-    let perfect = Imperfection::default();
+    let perfect = SensorVariation::default();
     let mut driven = Driven::new(Kind::ExploreShape, &perfect, [8, 1], Autoreset::Disabled);
     let press = |place: [f32; 2]| -> Vec<f32> {
         let action = [place[0], place[1], 1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -263,13 +263,7 @@ fn a_shape_is_felt_where_it_is() {
 fn as_many_environments_as_memory_has_no_room_for_are_refused() {
     let gel = FastGel::phystac().unwrap();
     for n in [0, 10_000_000_000_000, usize::MAX] {
-        let made = Tasks::new(
-            Kind::HoldForce,
-            &gel,
-            &imperfection(),
-            [n, 2],
-            Autoreset::Disabled,
-        );
+        let made = Tasks::new(Kind::HoldForce, &gel, &variation(), [n, 2], Autoreset::Disabled);
         assert!(matches!(made, Err(TaskError::Count { found, .. }) if found == n));
     }
 }
@@ -277,7 +271,7 @@ fn as_many_environments_as_memory_has_no_room_for_are_refused() {
 #[test]
 fn a_picture_has_its_size_and_shows_the_contact() {
     for kind in Kind::ALL {
-        let mut driven = Driven::new(kind, &imperfection(), [2, 1], Autoreset::Disabled);
+        let mut driven = Driven::new(kind, &variation(), [2, 1], Autoreset::Disabled);
         let untouched = driven.tasks.picture(1).unwrap();
         assert_eq!(untouched.len(), 3 * PICTURE_PX[0] * PICTURE_PX[1]);
         let actions = vec![0.6; 2 * driven.tasks.n_actions()];

@@ -125,9 +125,9 @@ pub(crate) fn own(sensor: &Sensor, own: Own, seed: u64, number: u64) -> Option<D
         },
         ref shape => shape.clone(),
     };
-    let spin_rad = random.random_range(0.0..TAU);
+    let yaw_rad = random.random_range(0.0..TAU);
     let depth_mm = deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0);
-    Some(upright(sensor, &shape, place_mm, spin_rad, depth_mm))
+    Some(upright(sensor, &shape, place_mm, yaw_rad, depth_mm))
 }
 
 /// Moves more locations close to the edges, because no press lies beyond them. `part`: location as
@@ -221,11 +221,11 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
 }
 
 /// A press straight down of an upright shape, on the finest mesh.
-pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad: f64, depth_mm: f64) -> Draw {
+pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, yaw_rad: f64, depth_mm: f64) -> Draw {
     Draw {
         shape: shape.clone(),
         place_mm,
-        rotation: DQuat::from_rotation_z(spin_rad),
+        rotation: DQuat::from_rotation_z(yaw_rad),
         depth_mm,
         edge_mm: finest_mm(sensor),
         slide: None,
@@ -235,8 +235,8 @@ pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad:
 /// A random rotation about the vertical, then a tilt in a random direction.
 fn turned(tilt: f64, random: &mut impl Rng) -> DQuat {
     let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
-    let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
-    (DQuat::from_axis_angle(axis, tilt) * spin).normalize()
+    let yaw = DQuat::from_rotation_z(random.random_range(0.0..TAU));
+    (DQuat::from_axis_angle(axis, tilt) * yaw).normalize()
 }
 
 /// A shape of one piece, tall enough that its top never goes below the gel's surface.

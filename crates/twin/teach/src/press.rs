@@ -160,10 +160,10 @@ impl Teacher {
         &self,
         shape: &Shape,
         place_mm: DVec2,
-        spin_rad: f64,
+        yaw_rad: f64,
         depth_mm: f64,
     ) -> Result<Lesson, TeachError> {
-        self.press(&upright(&self.sensor, shape, place_mm, spin_rad, depth_mm))
+        self.press(&upright(&self.sensor, shape, place_mm, yaw_rad, depth_mm))
     }
 
     /// An out-of-distribution press, on the finest mesh: only the frames that are out of

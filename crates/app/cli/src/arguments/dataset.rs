@@ -37,10 +37,10 @@ pub(crate) struct Dataset {
     /// the pressures at the ports].
     #[arg(long, value_name = "DIR", conflicts_with_all = ["check", "merge"])]
     pub(crate) twin: Option<PathBuf>,
-    /// Sensor variation (TOML, see `twintac fast imperfection`): each press has an imperfect sensor
+    /// Sensor variation (TOML, see `twintac fast variation`): each press has an imperfect sensor
     /// of its own. Needs --fast.
-    #[arg(long, value_name = "FILE", requires = "fast", conflicts_with_all = ["check", "merge"])]
-    pub(crate) imperfection: Option<PathBuf>,
+    #[arg(long, alias = "imperfection", value_name = "FILE", requires = "fast", conflicts_with_all = ["check", "merge"])]
+    pub(crate) variation: Option<PathBuf>,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE", conflicts_with_all = ["twin", "check", "merge"])]
     pub(crate) settings: Option<PathBuf>,
@@ -77,7 +77,7 @@ impl Dataset {
                 None => FastSource::BuiltIn,
             }),
             twin: self.twin.clone(),
-            imperfection: self.imperfection.clone(),
+            variation: self.variation.clone(),
             settings: self.settings.clone(),
         }
     }

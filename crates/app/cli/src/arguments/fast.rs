@@ -44,7 +44,7 @@ pub(crate) struct FastTrain {
 /// file is printed.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("source").required(true).multiple(true))]
-pub(crate) struct FastImperfection {
+pub(crate) struct FastVariation {
     /// Folder of a trained model: a run's `model`. It shows how taxels differ in gain and static
     /// nonlinearity, and how mountings differ in contact height, position and yaw.
     #[arg(long, value_name = "DIR", group = "source")]
@@ -63,7 +63,7 @@ pub(crate) struct FastImperfection {
     /// Sensor description (TOML) [default: the model's].
     #[arg(long, value_name = "FILE", required_unless_present = "model")]
     pub(crate) sensor: Option<PathBuf>,
-    /// File to write (TOML, a table [imperfection]).
+    /// File to write (TOML, a table [variation]).
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }

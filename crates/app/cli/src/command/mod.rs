@@ -11,7 +11,6 @@ mod export;
 mod fast;
 mod files;
 mod follow;
-mod imperfection;
 mod locate;
 mod mesh;
 mod paper;
@@ -23,6 +22,7 @@ mod sensor;
 mod simulate;
 mod stages;
 mod stream;
+mod variation;
 mod view;
 
 use anyhow::Result;
@@ -58,7 +58,7 @@ pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Locate(arguments) => locate::run(&arguments),
         Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments, program),
-        Command::Fast(FastCommand::Imperfection(arguments)) => imperfection::run(&arguments),
+        Command::Fast(FastCommand::Variation(arguments)) => variation::run(&arguments),
         Command::Report(arguments) => stages::report(&arguments, program),
     }
 }

@@ -55,7 +55,7 @@ fn table(predicted: &Predicted) -> Vec<Vec<String>> {
         for taxel in &predicted.taxels {
             head.extend([format!("{taxel}_low_kpa"), format!("{taxel}_high_kpa")]);
         }
-        head.extend(["unlikeness", "is_unlike"].map(str::to_owned));
+        head.extend(["ood_score", "is_out_of_distribution"].map(str::to_owned));
     }
     let mut rows = vec![head];
     for press in &predicted.presses {
@@ -77,8 +77,8 @@ fn table(predicted: &Predicted) -> Vec<Vec<String>> {
                     row.push(format!("{:.5}", reading_kpa - half_kpa));
                     row.push(format!("{:.5}", reading_kpa + half_kpa));
                 }
-                row.push(format!("{:.3}", sure.unlikeness[frame]));
-                row.push(sure.is_unlike[frame].to_string());
+                row.push(format!("{:.3}", sure.ood_score[frame]));
+                row.push(sure.is_out_of_distribution[frame].to_string());
             }
             rows.push(row);
         }

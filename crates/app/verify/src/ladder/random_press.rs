@@ -87,8 +87,8 @@ pub(crate) fn draw_thin(sensor: &Sensor, seed: u64, index: u64) -> Result<Random
 fn turn(random: &mut ChaCha8Rng) -> DQuat {
     let tilt_about = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
     let tilt = DQuat::from_axis_angle(tilt_about, random.random_range(0.0..MAX_TILT_RAD));
-    let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
-    (tilt * spin).normalize()
+    let yaw = DQuat::from_rotation_z(random.random_range(0.0..TAU));
+    (tilt * yaw).normalize()
 }
 
 /// A sphere, cylinder, box or cone of random size and rounding. For the mesh, a sphere stands for a

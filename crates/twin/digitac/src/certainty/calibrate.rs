@@ -62,7 +62,7 @@ pub struct Lessons<'a> {
 /// A frame of a press that was not used to train the twin that predicted it.
 #[derive(Clone)]
 struct Frame {
-    unlikeness: f64,
+    ood_score: f64,
     depth_mm: f64,
     /// For each usable reading, what is known before the measurement, and the error, kPa.
     readings: Vec<(Known, f64)>,
@@ -109,7 +109,7 @@ pub fn calibrate(
         return Ok(None);
     };
     let of_contact = frames.iter().filter(|frame| frame.depth_mm > 0.0);
-    let mut scores: Vec<f64> = of_contact.map(|frame| frame.unlikeness).collect();
+    let mut scores: Vec<f64> = of_contact.map(|frame| frame.ood_score).collect();
     let teachers: Vec<usize> = teachers.into_iter().collect();
     let mut certainty = Certainty {
         level_percent: 100.0 * LEVEL,
@@ -125,12 +125,12 @@ pub fn calibrate(
         let frames = lessons.without(&unlike, split, variant)?;
         let unlike = frames
             .iter()
-            .filter(|frame| frame.unlikeness > certainty.threshold);
+            .filter(|frame| frame.ood_score > certainty.threshold);
         growths.extend(unlike.flat_map(|frame| {
             let usual = certainty.factor(frame.depth_mm);
             let needed = frame.readings.iter();
             needed.map(move |(known, error)| {
-                (error.abs() / (usual * spread.kpa(known)) - 1.0) / (frame.unlikeness - 1.0)
+                (error.abs() / (usual * spread.kpa(known)) - 1.0) / (frame.ood_score - 1.0)
             })
         }));
     }
@@ -303,7 +303,7 @@ impl Lessons<'_> {
             let row = &predicted_kpa[frame];
             let rates = rates_kpa_per_s(&press.features.time_s, predicted_kpa, frame);
             let depth_mm = press.features.depth_mm[frame];
-            let unlikeness = taught.unlikeness(contact.place_mm, &contact.underside, depth_mm);
+            let ood_score = taught.ood_score(contact.place_mm, &contact.underside, depth_mm);
             let largest_kpa = row.iter().fold(0.0_f64, |most, kpa| most.max(kpa.abs()));
             let usable = |taxel: &usize| press.valid[frame][*taxel] && !self.scale.left_out.contains(taxel);
             let reading = |taxel: usize| {
@@ -311,12 +311,12 @@ impl Lessons<'_> {
                     reading_kpa: row[taxel],
                     rate_kpa_per_s: rates[taxel],
                     largest_kpa,
-                    unlikeness: unlikeness.min(1.0),
+                    ood_score: ood_score.min(1.0),
                 };
                 (known, press.readings_kpa[frame][taxel] - row[taxel])
             };
             Frame {
-                unlikeness,
+                ood_score,
                 depth_mm,
                 readings: (0..row.len()).filter(usable).map(reading).collect(),
             }

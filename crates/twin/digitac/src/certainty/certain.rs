@@ -50,39 +50,39 @@ pub struct PressCertainty {
     /// Half the width of the interval around each reading, kPa; `[n_frames][n_taxels]`.
     pub half_width_kpa: Vec<Vec<f64>>,
     /// OOD score of the contact: below about 1, it lies between training contacts.
-    pub unlikeness: Vec<f64>,
+    pub ood_score: Vec<f64>,
     /// Whether the contact is out of distribution, so that readings and intervals cannot be
     /// trusted.
-    pub is_unlike: Vec<bool>,
+    pub is_out_of_distribution: Vec<bool>,
 }
 
 impl Certainty {
     /// OOD score of a contact at a depth: below about 1, it lies between training contacts in
     /// location, depth and contact geometry. 0 above the gel. Allocates no memory.
     #[must_use]
-    pub fn unlikeness(&self, contact: &Contact, depth_mm: f64) -> f64 {
+    pub fn ood_score(&self, contact: &Contact, depth_mm: f64) -> f64 {
         self.taught
-            .unlikeness(contact.place_mm, &contact.underside, depth_mm)
+            .ood_score(contact.place_mm, &contact.underside, depth_mm)
     }
 
     /// Half widths of the intervals around the readings of a frame, kPa; `[n_taxels]`.
     /// `rates_kpa_per_s` are the rates of change since the previous frame. Allocates no memory.
     pub(crate) fn half_widths_kpa(
         &self,
-        (unlikeness, depth_mm): (f64, f64),
+        (ood_score, depth_mm): (f64, f64),
         readings_kpa: &[f64],
         rates_kpa_per_s: &[f64],
         half_widths_kpa: &mut [f64],
     ) {
         let largest_kpa = readings_kpa.iter().fold(0.0_f64, |most, kpa| most.max(kpa.abs()));
-        let factor = self.factor(depth_mm) * self.widening(unlikeness);
+        let factor = self.factor(depth_mm) * self.widening(ood_score);
         let rows = readings_kpa.iter().zip(rates_kpa_per_s);
         for (half_width, (&reading_kpa, &rate_kpa_per_s)) in half_widths_kpa.iter_mut().zip(rows) {
             let known = Known {
                 reading_kpa,
                 rate_kpa_per_s,
                 largest_kpa,
-                unlikeness: unlikeness.min(1.0),
+                ood_score: ood_score.min(1.0),
             };
             *half_width = factor * self.spread.kpa(&known);
         }
@@ -99,12 +99,12 @@ impl Certainty {
         let mut found = PressCertainty::default();
         for (frame, row) in readings_kpa.iter().enumerate() {
             let rates = rates_kpa_per_s(time_s, readings_kpa, frame);
-            let unlikeness = self.unlikeness(contact(frame), depth_mm[frame]);
+            let ood_score = self.ood_score(contact(frame), depth_mm[frame]);
             let mut half_widths_kpa = vec![0.0; row.len()];
-            self.half_widths_kpa((unlikeness, depth_mm[frame]), row, &rates, &mut half_widths_kpa);
+            self.half_widths_kpa((ood_score, depth_mm[frame]), row, &rates, &mut half_widths_kpa);
             found.half_width_kpa.push(half_widths_kpa);
-            found.unlikeness.push(unlikeness);
-            found.is_unlike.push(unlikeness > self.threshold);
+            found.ood_score.push(ood_score);
+            found.is_out_of_distribution.push(ood_score > self.threshold);
         }
         found
     }
@@ -113,8 +113,8 @@ impl Certainty {
         self.factors[usize::from(depth_mm > 0.0)]
     }
 
-    fn widening(&self, unlikeness: f64) -> f64 {
-        1.0 + self.growth * (unlikeness - 1.0).max(0.0)
+    fn widening(&self, ood_score: f64) -> f64 {
+        1.0 + self.growth * (ood_score - 1.0).max(0.0)
     }
 }
 

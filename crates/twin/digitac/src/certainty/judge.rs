@@ -79,7 +79,7 @@ pub fn score_certainty(
         for (frame, row) in predicted.iter().enumerate() {
             let touches = features.depth_mm[frame] > 0.0;
             n_frames += usize::from(touches);
-            n_flagged += usize::from(touches && sure.is_unlike[frame]);
+            n_flagged += usize::from(touches && sure.is_out_of_distribution[frame]);
             for (taxel, reading_kpa) in row.iter().enumerate() {
                 if !press.valid[frame][taxel] || scale.left_out.contains(&taxel) {
                     continue;

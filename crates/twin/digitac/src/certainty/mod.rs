@@ -1,5 +1,5 @@
 //! Uncertainty of a twin: a 90 % interval for every reading, and an out-of-distribution (OOD) score
-//! for every contact (in code: unlikeness).
+//! for every contact (in code: ood_score).
 //!
 //! ```text
 //! calibrate   setup and twin fitted again, four times without a quarter of the training locations,

@@ -22,7 +22,7 @@ pub(super) struct Known {
     /// Largest reading of the frame, kPa.
     pub(super) largest_kpa: f64,
     /// OOD score of the contact, at most 1.
-    pub(super) unlikeness: f64,
+    pub(super) ood_score: f64,
 }
 
 /// Parts of a reading's spread. Their squares are added.
@@ -112,7 +112,7 @@ impl Spread {
             self.still_kpa,
             self.of_reading * known.reading_kpa,
             self.of_largest * known.largest_kpa,
-            self.of_unlike * known.unlikeness * known.largest_kpa,
+            self.of_unlike * known.ood_score * known.largest_kpa,
             self.of_rate_s * known.rate_kpa_per_s,
         ];
         parts.iter().map(|part| part * part).sum::<f64>().sqrt()

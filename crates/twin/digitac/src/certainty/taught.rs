@@ -102,7 +102,7 @@ impl Taught {
                 depth_mm: depths.fold(0.0, f64::max),
             };
             let is_same = |known: &Underside| {
-                known == &contact.underside || known.unlikeness(&contact.underside, 1.0) < SAME_UNDERSIDE
+                known == &contact.underside || known.difference(&contact.underside, 1.0) < SAME_UNDERSIDE
             };
             match undersides.iter_mut().find(|(known, _)| is_same(known)) {
                 Some((_, own)) => own.push(deepest),
@@ -133,13 +133,13 @@ impl Taught {
     /// in spacings. The second is the smallest Euclidean norm, over all training presses, of three
     /// numbers: the excess of depth over the press, the difference of the contact geometries, and a
     /// third of the distance in spacings.
-    pub(crate) fn unlikeness(&self, place_mm: [f64; 2], underside: &Underside, depth_mm: f64) -> f64 {
+    pub(crate) fn ood_score(&self, place_mm: [f64; 2], underside: &Underside, depth_mm: f64) -> f64 {
         if depth_mm <= 0.0 {
             return 0.0;
         }
         let (mut nearest, mut least) = (f64::INFINITY, f64::INFINITY);
         for (known, presses) in &self.undersides {
-            let shape = known.unlikeness(underside, depth_mm) / SHAPE_PART;
+            let shape = known.difference(underside, depth_mm) / SHAPE_PART;
             for press in presses {
                 let spacings = distance_mm(press.place_mm, place_mm) / self.spacing_mm;
                 let deeper = (depth_mm - press.depth_mm).max(0.0) / self.depth_step_mm.max(f64::MIN_POSITIVE);

@@ -150,15 +150,15 @@ fn where_nobody_has_pressed_intervals_are_wider_and_contacts_are_flagged() {
     };
     let readings_kpa = [40.0, 3.0, 0.5, 0.0];
     let half_widths = |contact: &Contact, depth_mm: f64| {
-        let unlikeness = certainty.unlikeness(contact, depth_mm);
+        let ood_score = certainty.ood_score(contact, depth_mm);
         let mut half_widths_kpa = [0.0; 4];
         certainty.half_widths_kpa(
-            (unlikeness, depth_mm),
+            (ood_score, depth_mm),
             &readings_kpa,
             &[0.0; 4],
             &mut half_widths_kpa,
         );
-        (unlikeness > certainty.threshold, half_widths_kpa)
+        (ood_score > certainty.threshold, half_widths_kpa)
     };
     let (is_flagged, usual) = half_widths(&known, 1.2);
     assert!(!is_flagged && usual.iter().all(|kpa| *kpa > 0.0));
@@ -169,7 +169,7 @@ fn where_nobody_has_pressed_intervals_are_wider_and_contacts_are_flagged() {
             assert!(wider > 1.2 * usual, "{wider} {usual}");
         }
     }
-    assert_eq!(certainty.unlikeness(&other_shape, -0.5), 0.0);
+    assert_eq!(certainty.ood_score(&other_shape, -0.5), 0.0);
 }
 
 #[test]
@@ -200,16 +200,16 @@ fn predictions_say_how_sure_they_are() {
     assert_eq!(
         [
             sure.half_width_kpa.len(),
-            sure.unlikeness.len(),
-            sure.is_unlike.len()
+            sure.ood_score.len(),
+            sure.is_out_of_distribution.len()
         ],
         [n_frames; 3]
     );
     for (frame, depth_mm) in predicted[0].depth_mm.iter().enumerate() {
-        assert_eq!(sure.unlikeness[frame] > 0.0, *depth_mm > 0.0);
+        assert_eq!(sure.ood_score[frame] > 0.0, *depth_mm > 0.0);
         assert_eq!(
-            sure.is_unlike[frame],
-            sure.unlikeness[frame] > certainty.threshold
+            sure.is_out_of_distribution[frame],
+            sure.ood_score[frame] > certainty.threshold
         );
     }
     let text = serde_json::to_string(&certainty).unwrap();

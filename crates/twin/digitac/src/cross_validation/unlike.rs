@@ -61,7 +61,7 @@ pub(super) fn tell_apart(
             let contact = &contacts[places.of_press[press]];
             let depths = presses[press].features.depth_mm.iter().copied();
             let counted = depths.filter(move |depth_mm| *depth_mm > 0.0 && counts(press, *depth_mm));
-            let score = |depth_mm| taught.unlikeness(contact.place_mm, &contact.underside, depth_mm);
+            let score = |depth_mm| taught.ood_score(contact.place_mm, &contact.underside, depth_mm);
             counted.map(score).collect::<Vec<f64>>()
         };
         chosen.iter().flat_map(of_press).collect()

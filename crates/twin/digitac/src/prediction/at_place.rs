@@ -25,7 +25,7 @@ pub struct TwinAtPlace {
 struct Sureness {
     certainty: Certainty,
     contact: Contact,
-    unlikeness: f64,
+    ood_score: f64,
     /// The last readings, kPa; `[n_taxels]`.
     before_kpa: Vec<f64>,
     /// Their rates of change, kPa/s; `[n_taxels]`.
@@ -51,8 +51,8 @@ impl Sureness {
                 *before = *now;
             }
         }
-        self.unlikeness = self.certainty.unlikeness(&self.contact, depth_mm);
-        let contact = (self.unlikeness, depth_mm);
+        self.ood_score = self.certainty.ood_score(&self.contact, depth_mm);
+        let contact = (self.ood_score, depth_mm);
         let rates = &self.rates_kpa_per_s;
         self.certainty
             .half_widths_kpa(contact, readings_kpa, rates, &mut self.half_widths_kpa);
@@ -98,7 +98,7 @@ impl TwinAtPlace {
             sureness: Some(Sureness {
                 certainty: certainty.clone(),
                 contact,
-                unlikeness: 0.0,
+                ood_score: 0.0,
                 before_kpa: zeros.clone(),
                 rates_kpa_per_s: zeros.clone(),
                 half_widths_kpa: zeros,
@@ -149,11 +149,11 @@ impl TwinAtPlace {
     /// OOD score of the contact of the last frame, and whether the contact is out of distribution,
     /// so that readings and intervals cannot be trusted. `None` for a twin without intervals.
     #[must_use]
-    pub fn unlikeness(&self) -> Option<(f64, bool)> {
+    pub fn ood_score(&self) -> Option<(f64, bool)> {
         let sureness = self.sureness.as_ref()?;
         Some((
-            sureness.unlikeness,
-            sureness.unlikeness > sureness.certainty.threshold,
+            sureness.ood_score,
+            sureness.ood_score > sureness.certainty.threshold,
         ))
     }
 

@@ -16,7 +16,7 @@ const LEAST_OF_PRESS: f64 = 0.25;
 pub(super) struct FrameErrors<'a> {
     pub(super) press: &'a Lesson,
     pub(super) gel_from_indenter: Pose,
-    pub(super) novelty: f32,
+    pub(super) ood_score: f32,
     /// Signed error of the pressure at the taxel with the largest pressure, as a fraction of the
     /// press's largest pressure.
     pub(super) nearest: f64,
@@ -64,7 +64,7 @@ impl<'a> PressErrors<'a> {
             frames.push(FrameErrors {
                 press,
                 gel_from_indenter: frame.gel_from_indenter,
-                novelty: reader.novelty(&touching),
+                ood_score: reader.ood_score(&touching),
                 nearest: error(nearest),
                 all: (0..n_taxels).map(|taxel| error(taxel).abs()).sum::<f64>() / n_taxels as f64,
                 force,

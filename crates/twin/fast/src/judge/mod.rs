@@ -103,7 +103,7 @@ impl FastGel {
             at_edge: group(&|frame| self.is_at_edge(frame)),
             untouched_percent: mean(untouched.iter().copied()).map(|part| 100.0 * part),
             by_novelty: familiarity
-                .map(|(name, is_new)| (name.to_owned(), group(&|frame| (frame.novelty > 1.0) == is_new)))
+                .map(|(name, is_new)| (name.to_owned(), group(&|frame| (frame.ood_score > 1.0) == is_new)))
                 .into(),
         })
     }

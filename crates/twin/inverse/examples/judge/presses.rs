@@ -28,7 +28,7 @@ const DEPTHS_MM: std::ops::Range<f64> = 1.5..4.0;
 pub(crate) struct Solved {
     pub(crate) shape: usize,
     pub(crate) place_mm: DVec2,
-    pub(crate) spin_rad: f64,
+    pub(crate) yaw_rad: f64,
     pub(crate) depth_mm: f64,
     pub(crate) lesson: Lesson,
 }
@@ -52,13 +52,13 @@ pub(crate) fn solved(
         let random = &mut stream(1, &format!("press to judge the inverse {number}"));
         let shape = number % shapes.len();
         let place_mm = low + (high - low) * DVec2::new(random.random(), random.random());
-        let spin_rad = random.random_range(0.0..TAU);
+        let yaw_rad = random.random_range(0.0..TAU);
         let depth_mm = random.random_range(DEPTHS_MM);
-        let lesson = teacher.upright(&shapes[shape].shape, place_mm, spin_rad, depth_mm)?;
+        let lesson = teacher.upright(&shapes[shape].shape, place_mm, yaw_rad, depth_mm)?;
         let solved = Solved {
             shape,
             place_mm,
-            spin_rad,
+            yaw_rad,
             depth_mm,
             lesson,
         };

@@ -5,7 +5,7 @@ use std::error::Error;
 use digitac::Twin;
 use glam::{DQuat, DVec3};
 use twintac_fast::{Body, FastGel, Touch};
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_sensors::{SensorBatch, SensorVariation};
 use twintac_shape::{Pose, Shape, SurfaceFile, Surfaces};
 
 /// Taxels of a sensor.
@@ -100,8 +100,8 @@ impl Scene {
         [n_sensors, n_threads]: [usize; 2],
     ) -> Result<Self, Box<dyn Error>> {
         let imperfection = match twin {
-            Some(_) => Imperfection::parse("rate", IMPERFECTION)?,
-            None => Imperfection::default(),
+            Some(_) => SensorVariation::parse("rate", IMPERFECTION)?,
+            None => SensorVariation::default(),
         };
         let gel = FastGel::phystac()?;
         Ok(Self {

@@ -10,7 +10,7 @@ fn task() -> FollowEdge {
 fn once_around_a_disc_is_its_circumference() {
     let task = task();
     let mut episode = task.begin(8, &mut twintac_random::stream(1, "disc"));
-    (episode.body, episode.spin_rad, episode.sense) = (1, 0.7, -1.0);
+    (episode.body, episode.yaw_rad, episode.sense) = (1, 0.7, -1.0);
     episode.object_mm = DVec2::new(2.0, -1.0);
     let on_edge = |part: f64| 9.5 * DVec2::from_angle(-2.0 * PI * part);
     episode.at_mm = episode.object_mm + on_edge(0.0);
@@ -41,7 +41,7 @@ fn the_force_has_to_be_moderate_and_the_edge_near() {
     let reward = |beside_mm: f64, force_n: f64| {
         let mut episode = start.clone();
         let (edge_mm, outward) = task.edges[start.body as usize].at(0.3);
-        let turned = |at: DVec2| start.object_mm + DVec2::from_angle(start.spin_rad).rotate(at);
+        let turned = |at: DVec2| start.object_mm + DVec2::from_angle(start.yaw_rad).rotate(at);
         let way = start.sense * outward.perp();
         episode.at_mm = turned(edge_mm + beside_mm * outward);
         episode.nearest = task.nearest(&episode);

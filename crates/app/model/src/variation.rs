@@ -1,5 +1,5 @@
 //! Estimates the sensor variation of a kind of sensors from what was measured on one of them: a
-//! file for [`Imperfection`].
+//! file for [`SensorVariation`].
 //!
 //! A trained model shows how its taxels and mountings differ; recordings show the errors of the
 //! read-out. What neither shows is left out, with the reason: nothing is guessed. For every width
@@ -8,12 +8,12 @@
 use std::path::Path;
 
 use digitac::Model;
-use twintac_imperfection::of_model::Casting;
-use twintac_imperfection::{Line, of_model, of_readings, text};
 use twintac_recorded::Recorded;
 use twintac_sensor::SensorFile;
-use twintac_sensors::Imperfection;
+use twintac_sensors::SensorVariation;
 use twintac_store::write_file;
+use twintac_variation::of_model::Casting;
+use twintac_variation::{Line, of_model, of_readings, text};
 use twintac_work::WorkError;
 
 use crate::taxels::left_out;
@@ -22,7 +22,7 @@ use crate::unseen::refuse_other_sensor;
 /// The sources of the estimate. Without a model or without recordings, the fields that they would
 /// give are left out.
 #[derive(Clone, Copy, Debug)]
-pub struct ImperfectionSources<'a> {
+pub struct VariationSources<'a> {
     /// The sensor's description.
     pub sensor: &'a SensorFile,
     /// The folder of a trained model of the sensor.
@@ -35,9 +35,9 @@ pub struct ImperfectionSources<'a> {
 
 /// The estimated sensor variation, and the text of its file.
 #[derive(Clone, Debug)]
-pub struct FoundImperfection {
+pub struct FoundVariation {
     /// The widths; zero for those that were left out.
-    pub imperfection: Imperfection,
+    pub variation: SensorVariation,
     /// The file's text: every width has a comment.
     pub text: String,
     /// Names of the fields that were estimated.
@@ -63,7 +63,7 @@ pub fn sensor_of_model(folder: &Path) -> Result<SensorFile, WorkError> {
 /// # Errors
 /// Neither a model nor recordings; a model that cannot be read; recordings that are of another
 /// sensor than description and model.
-pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImperfection, WorkError> {
+pub fn find_variation(sources: &VariationSources<'_>) -> Result<FoundVariation, WorkError> {
     if sources.model.is_none() && sources.recorded.is_none() {
         return Err(WorkError::Input(
             "there is no source for the sensor variation; give a model, recordings, or both".to_owned(),
@@ -98,13 +98,13 @@ pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImper
     ));
     let text = text(&sensor.name, sources.command, &lines);
     // The text is parsed by the same rules as a file that a person wrote.
-    let imperfection = Imperfection::parse("the estimated sensor variation", &text)?;
+    let variation = SensorVariation::parse("the estimated sensor variation", &text)?;
     let names = |is_found: bool| {
         let lines = lines.iter().filter(|line| line.said.is_ok() == is_found);
         lines.map(|line: &Line| line.field).collect::<Vec<_>>()
     };
-    Ok(FoundImperfection {
-        imperfection,
+    Ok(FoundVariation {
+        variation,
         found: names(true),
         left_out: names(false),
         text,
@@ -129,7 +129,7 @@ fn refuse_other_gel(of_model: &SensorFile, described: &SensorFile, folder: &Path
     )))
 }
 
-impl FoundImperfection {
+impl FoundVariation {
     /// Writes the file.
     ///
     /// # Errors

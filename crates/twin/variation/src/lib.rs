@@ -1,5 +1,5 @@
 //! Estimates of the sensor variation of a kind of sensor, from one sensor: the widths of the
-//! distributions of `Imperfection` in `twintac-sensors`.
+//! distributions of `SensorVariation` in `twintac-sensors`.
 //!
 //! Inputs are a trained model and a characterization of recordings. The output is the text of a
 //! TOML file with one line for each field, each with a comment that says from which data, with
@@ -16,7 +16,7 @@
 //! # How it works
 //!
 //! `width` has the estimators, `motion` the common motion of the ports, `text` writes the file,
-//! which `Imperfection` reads back.
+//! which `SensorVariation` reads back.
 //!
 //! A spread over taxels is a spread about their mean, because one sensor does not tell what its
 //! taxels have in common. Known errors of the values (the uncertainty of a contact height, the

@@ -1,19 +1,19 @@
-//! `twintac fast imperfection`: estimates sensor variation from a trained model and recordings.
+//! `twintac fast variation`: estimates sensor variation from a trained model and recordings.
 
 use std::path::PathBuf;
 
 use anyhow::{Result, bail};
-use twintac_model::{ImperfectionSources, find_imperfection, sensor_of_model};
+use twintac_model::{VariationSources, find_variation, sensor_of_model};
 use twintac_recorded::Recorded;
 use twintac_sensor::SensorFile;
 
 use super::files::{expand, import_aloud, rename};
-use crate::arguments::FastImperfection;
+use crate::arguments::FastVariation;
 use crate::output::print;
 use crate::progress::Bars;
 
 /// Estimates the widths, and prints or writes their file.
-pub(crate) fn run(arguments: &FastImperfection) -> Result<()> {
+pub(crate) fn run(arguments: &FastVariation) -> Result<()> {
     let sensor = match (&arguments.sensor, &arguments.model) {
         (Some(file), _) => SensorFile::read(file)?,
         (None, Some(model)) => sensor_of_model(model)?,
@@ -27,13 +27,13 @@ pub(crate) fn run(arguments: &FastImperfection) -> Result<()> {
         Some(recorded)
     };
     let command = command(arguments);
-    let sources = ImperfectionSources {
+    let sources = VariationSources {
         sensor: &sensor,
         model: arguments.model.as_deref(),
         recorded: recorded.as_ref(),
         command: &command,
     };
-    let found = find_imperfection(&sources)?;
+    let found = find_variation(&sources)?;
     let Some(out) = &arguments.out else {
         return print(found.text.trim_end());
     };
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &FastImperfection) -> Result<()> {
     print(&format!("file      {}", out.display()))
 }
 
-fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
+fn read(arguments: &FastVariation, sensor: &SensorFile) -> Result<Recorded> {
     let files = expand(&arguments.recordings)?;
     let is_csv = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "csv");
     if !files.iter().any(is_csv) {
@@ -69,8 +69,8 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
 }
 
 /// The command as text, for the first line of the file.
-fn command(arguments: &FastImperfection) -> String {
-    let mut words = "twintac fast imperfection".to_owned();
+fn command(arguments: &FastVariation) -> String {
+    let mut words = "twintac fast variation".to_owned();
     let mut add = |name: &str, value: &Option<PathBuf>| {
         if let Some(value) = value {
             words += &format!(" {name} {}", quoted(&value.display().to_string()));

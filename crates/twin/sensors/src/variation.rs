@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 use twintac_config::{ConfigError, Document};
 
 /// The sensor variation: the distributions from which each sensor's deviations are drawn. Zero
-/// leaves a deviation out; [`Imperfection::default`] is a perfect sensor. *Deviation* in the fields
+/// leaves a deviation out; [`SensorVariation::default`] is a perfect sensor. *Deviation* in the fields
 /// is the standard deviation of a normal distribution about zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Imperfection {
+pub struct SensorVariation {
     /// Deviation of each taxel's gain, as a fraction of the gain.
     pub gain_deviation: f64,
     /// Deviation of the relative growth of each taxel's gain with its reading, 1/kPa.
@@ -59,22 +59,22 @@ pub struct Imperfection {
     pub tilt_deviation_rad: f64,
 }
 
-/// A file with the table `[imperfection]`.
+/// A file with the table `[variation]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    imperfection: Imperfection,
+    variation: SensorVariation,
 }
 
-impl Imperfection {
-    /// Parses a TOML text with the table `[imperfection]`; `file` names it in errors.
+impl SensorVariation {
+    /// Parses a TOML text with the table `[variation]`; `file` names it in errors.
     ///
     /// # Errors
     /// The first field that is wrong, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         let document = twintac_config::parse::<File>(file, text)?;
-        document.value.imperfection.check(&document)?;
-        Ok(document.value.imperfection)
+        document.value.variation.check(&document)?;
+        Ok(document.value.variation)
     }
 
     fn check(&self, document: &Document<File>) -> Result<(), ConfigError> {
@@ -103,7 +103,7 @@ impl Imperfection {
             ("jitter", self.jitter),
         ];
         let wrong = |name: &str, value: f64, hint: &str| {
-            document.error(&format!("imperfection.{name}"), format!("is {value}"), hint)
+            document.error(&format!("variation.{name}"), format!("is {value}"), hint)
         };
         for (name, value) in widths {
             if !value.is_finite() || value < 0.0 {
@@ -151,40 +151,43 @@ mod tests {
 
     #[test]
     fn a_file_is_read_and_a_wrong_field_is_named() {
-        let text = "[imperfection]\ngain_deviation = 0.05\nrate_hz = 100.0\n";
-        let found = Imperfection::parse("a.toml", text).unwrap();
+        let text = "[variation]\ngain_deviation = 0.05\nrate_hz = 100.0\n";
+        let found = SensorVariation::parse("a.toml", text).unwrap();
         assert_eq!(
             found,
-            Imperfection {
+            SensorVariation {
                 gain_deviation: 0.05,
                 rate_hz: 100.0,
-                ..Imperfection::default()
+                ..SensorVariation::default()
             }
         );
+        let former = text.replace("variation", "imperfection");
+        assert_eq!(SensorVariation::parse("a.toml", &former).unwrap(), found);
         for (text, expected) in [
+            ("[variation]\nnoise_deviation_kpa = -1.0\n", "noise_deviation_kpa"),
+            ("[variation]\nhysteresis = 1.5\n", "hysteresis"),
+            ("[variation]\ncross_talk = -1.5\n", "cross_talk"),
             (
-                "[imperfection]\nnoise_deviation_kpa = -1.0\n",
-                "noise_deviation_kpa",
-            ),
-            ("[imperfection]\nhysteresis = 1.5\n", "hysteresis"),
-            ("[imperfection]\ncross_talk = -1.5\n", "cross_talk"),
-            (
-                "[imperfection]\ncross_talk_deviation = -0.1\n",
+                "[variation]\ncross_talk_deviation = -0.1\n",
                 "cross_talk_deviation",
             ),
-            ("[imperfection]\ntilt_deviation_rad = nan\n", "tilt_deviation_rad"),
-            ("[imperfection]\ndrift_kpa_per_k = inf\n", "drift_kpa_per_k"),
+            ("[variation]\ntilt_deviation_rad = nan\n", "tilt_deviation_rad"),
+            ("[variation]\ndrift_kpa_per_k = inf\n", "drift_kpa_per_k"),
             (
-                "[imperfection]\ndead_chance = 0.6\nlate_chance = 0.5\n",
+                "[variation]\ndead_chance = 0.6\nlate_chance = 0.5\n",
                 "late_chance",
             ),
             (
-                "[imperfection]\ntemperature_deviation_k = 2.0\n",
+                "[variation]\ntemperature_deviation_k = 2.0\n",
                 "temperature_time_s",
             ),
-            ("[imperfection]\nnois = 1.0\n", "nois"),
+            ("[variation]\nnois = 1.0\n", "nois"),
+            (
+                "[imperfection]\njitter = 0.1\nhysteresis = 2.0\n",
+                "a.toml:3: `variation.hysteresis`",
+            ),
         ] {
-            let error = Imperfection::parse("a.toml", text).unwrap_err().to_string();
+            let error = SensorVariation::parse("a.toml", text).unwrap_err().to_string();
             assert!(error.contains(expected) && error.contains("a.toml"), "{error}");
         }
     }

@@ -7,11 +7,11 @@ use std::path::Path;
 
 use glam::DVec3;
 use twintac_fast::{Body, FastGel, Touch};
-use twintac_model::{FoundImperfection, ImperfectionSources, find_imperfection};
+use twintac_model::{FoundVariation, VariationSources, find_variation};
 use twintac_recorded::Recorded;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_sensor::SensorFile;
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_sensors::{SensorBatch, SensorVariation};
 use twintac_shape::Pose;
 
 const STEP_S: f64 = 0.001;
@@ -28,13 +28,13 @@ fn height_mm(time_s: f64) -> f64 {
 }
 
 /// Recordings of a sensor with this variation, pressed slowly above each taxel.
-fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Recorded {
+fn recorded(variation: &SensorVariation, sensor: &SensorFile, seed: u64) -> Recorded {
     let sensor = &sensor.sensor;
     let indenter = sensor.indenter("sphere-25").unwrap();
     let body = [Body::new(&indenter.shape, &sensor.surfaces).unwrap()];
     let gel = FastGel::phystac().unwrap();
     let n_taxels = sensor.taxels.len();
-    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [1, 1], seed);
+    let mut batch = SensorBatch::new(&gel, None, variation.clone(), [1, 1], seed);
     let top_mm = sensor
         .gel
         .solid
@@ -97,9 +97,9 @@ fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Reco
 
 /// For an untouched sensor: the number of taxels that read zero, and of those that repeat another
 /// value.
-fn failing(imperfection: &Imperfection, seed: u64) -> [usize; 2] {
+fn failing(variation: &SensorVariation, seed: u64) -> [usize; 2] {
     let gel = FastGel::phystac().unwrap();
-    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [1, 1], seed);
+    let mut batch = SensorBatch::new(&gel, None, variation.clone(), [1, 1], seed);
     let rows: Vec<[f32; 8]> = (0..5)
         .map(|_| {
             let (mut readings_kpa, mut wrench) = ([0.0; 8], [[0.0; 6]]);
@@ -112,20 +112,20 @@ fn failing(imperfection: &Imperfection, seed: u64) -> [usize; 2] {
     [dead.len(), stuck.len()]
 }
 
-fn find(recorded: &Recorded, sensor: &SensorFile) -> FoundImperfection {
-    let sources = ImperfectionSources {
+fn find(recorded: &Recorded, sensor: &SensorFile) -> FoundVariation {
+    let sources = VariationSources {
         sensor,
         model: None,
         recorded: Some(recorded),
         command: "a test",
     };
-    find_imperfection(&sources).unwrap()
+    find_variation(&sources).unwrap()
 }
 
 #[test]
-fn known_imperfections_are_found_again() {
+fn known_variations_are_found_again() {
     let sensor = SensorFile::phystac().unwrap();
-    let drawn = Imperfection {
+    let drawn = SensorVariation {
         gain_deviation: 0.1,
         offset_deviation_kpa: 0.5,
         noise_deviation_kpa: 0.02,
@@ -135,7 +135,7 @@ fn known_imperfections_are_found_again() {
         stuck_chance: 0.2,
         rate_hz: 50.0,
         jitter: 0.1,
-        ..Imperfection::default()
+        ..SensorVariation::default()
     };
     // A sensor with both faults.
     let seed = (1..100)
@@ -143,20 +143,20 @@ fn known_imperfections_are_found_again() {
         .unwrap();
     let recorded = recorded(&drawn, &sensor, seed);
     let found = find(&recorded, &sensor);
-    let imperfection = &found.imperfection;
+    let variation = &found.variation;
     for (name, found, expected, tolerance) in [
-        ("noise", imperfection.noise_deviation_kpa, 0.02, 0.05),
-        ("quantum", imperfection.quantum_kpa, 0.01, 0.001),
-        ("hysteresis", imperfection.hysteresis, 0.05, 0.1),
-        ("rate", imperfection.rate_hz, 50.0, 0.01),
-        ("jitter", imperfection.jitter, 0.1, 0.1),
+        ("noise", variation.noise_deviation_kpa, 0.02, 0.05),
+        ("quantum", variation.quantum_kpa, 0.01, 0.001),
+        ("hysteresis", variation.hysteresis, 0.05, 0.1),
+        ("rate", variation.rate_hz, 50.0, 0.01),
+        ("jitter", variation.jitter, 0.1, 0.1),
     ] {
         assert!(
             (found / expected - 1.0).abs() < tolerance,
             "{name}: {found}, not {expected}"
         );
     }
-    let chances = [imperfection.dead_chance, imperfection.stuck_chance];
+    let chances = [variation.dead_chance, variation.stuck_chance];
     for (chance, n) in chances.into_iter().zip(failing(&drawn, seed)) {
         assert!((chance - (n + 1) as f64 / 12.0).abs() < 1e-3, "{chance} {n}");
     }
@@ -180,13 +180,13 @@ fn known_imperfections_are_found_again() {
 #[test]
 fn nothing_to_find_from_and_another_sensor_are_refused() {
     let sensor = SensorFile::phystac().unwrap();
-    let nothing = ImperfectionSources {
+    let nothing = VariationSources {
         sensor: &sensor,
         model: None,
         recorded: None,
         command: "a test",
     };
-    let error = find_imperfection(&nothing).unwrap_err().to_string();
+    let error = find_variation(&nothing).unwrap_err().to_string();
     assert!(error.contains("model, recordings, or both"), "{error}");
     let other = Recorded {
         recording: Recording {
@@ -197,18 +197,18 @@ fn nothing_to_find_from_and_another_sensor_are_refused() {
         },
         logs: Vec::new(),
     };
-    let sources = ImperfectionSources {
+    let sources = VariationSources {
         recorded: Some(&other),
         ..nothing
     };
-    let error = find_imperfection(&sources).unwrap_err().to_string();
+    let error = find_variation(&sources).unwrap_err().to_string();
     assert!(error.contains("other"), "{error}");
 }
 
-/// The files of this project, made by `twintac fast imperfection`.
+/// The files of this project, made by `twintac fast variation`.
 #[test]
 fn what_is_shipped_can_be_read_and_says_where_it_comes_from() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../imperfections");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../variations");
     let files: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
         .map(|file| file.unwrap().path())
@@ -217,12 +217,12 @@ fn what_is_shipped_can_be_read_and_says_where_it_comes_from() {
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
         let name = file.display().to_string();
-        let found = Imperfection::parse(&name, &text).unwrap();
+        let found = SensorVariation::parse(&name, &text).unwrap();
         assert!(
             found.gain_deviation > 0.0 && found.noise_deviation_kpa > 0.0,
             "{found:?}"
         );
-        assert!(text.contains("twintac fast imperfection --model"), "{name}");
+        assert!(text.contains("twintac fast variation --model"), "{name}");
         // No values that were fitted to other people's recordings are shipped.
         assert!(text.contains("emulated (") && !text.contains("real ("), "{name}");
     }

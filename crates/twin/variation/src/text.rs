@@ -49,7 +49,7 @@ pub fn text(sensor: &str, command: &str, lines: &[Line]) -> String {
     text += &comment(
         "`±` is a standard error. Values that could not be found are left out, with the reason. Fill them in by hand if you know them.",
     );
-    text += "\n[imperfection]\n";
+    text += "\n[variation]\n";
     for Line { field, said } in lines {
         match said {
             Ok(given) => {
@@ -80,7 +80,7 @@ fn comment(words: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use twintac_sensors::Imperfection;
+    use twintac_sensors::SensorVariation;
 
     use super::*;
 
@@ -91,12 +91,12 @@ mod tests {
             Line::left_out("jitter", "nobody looked"),
             Line::given("quantum_kpa", 3.051_757e-5, "steps".to_owned()),
         ];
-        let text = text("a", "twintac fast imperfection --model b", &lines);
-        let found = Imperfection::parse("a.toml", &text).unwrap();
-        let expected = Imperfection {
+        let text = text("a", "twintac fast variation --model b", &lines);
+        let found = SensorVariation::parse("a.toml", &text).unwrap();
+        let expected = SensorVariation {
             gain_deviation: 0.123,
             quantum_kpa: 3.05e-5,
-            ..Imperfection::default()
+            ..SensorVariation::default()
         };
         assert_eq!(found, expected);
         let lines: Vec<&str> = text.lines().collect();
