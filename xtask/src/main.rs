@@ -25,7 +25,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | c
          CHROMIUM a browser; `results` says which pictures are of older code
   bench  softbody: how fast presses are followed, and how far off tight solutions they are; writes docs/benchmarks/softbody.*
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
-         peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
+         peers: the same press on MuJoCo, Newton and rapier; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
          view: ten clients press gels through one `twintac view` for ten minutes; writes docs/benchmarks/view.*
          serial: a thousand frames of sixteen taxels a second over a serial line for ten minutes; writes docs/benchmarks/serial.*

@@ -12,7 +12,7 @@
 //! cases, bench      presses at 55 Hz: real-time factor, and errors against a tightly converged
 //!                   solution
 //! scaling     time and memory over the size of the mesh
-//! peers/      the same press in MuJoCo and Newton, by the Python scripts in peers/
+//! peers/      the same press in MuJoCo, Newton and rapier, by the Python scripts in peers/
 //! recording/  recordings on the emulated bench: frame rate, twenty faults, random kills
 //! import, serial    import of a large CSV log; frames over a serial line
 //! view        many clients of `twintac view` for minutes
