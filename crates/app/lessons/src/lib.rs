@@ -22,9 +22,9 @@
 //! 4. The surrogate is evaluated on the held-out presses, on test presses of shapes that no
 //!    training press has, and on test presses that slide and tilt. Errors are those of the
 //!    pressures at the ports and of the force against the FEM solution.
-//! 5. [`Told`] evaluates the OOD score ("ood_score" in code): presses deeper, thinner, sharper, more
-//!    tilted or with more bodies than trained on are compared with held-out ones. It has the
-//!    fraction of frames above the threshold of 1, and the AUROC.
+//! 5. [`Told`] evaluates the OOD score: presses deeper, thinner, sharper, more tilted or with more
+//!    bodies than trained on are compared with held-out ones. It has the fraction of frames above
+//!    the threshold of 1, and the AUROC.
 //!
 //! With `own_indenters` all presses use the sensor's own indenters, upright and near its ports, and
 //! there are no sliding and no out-of-distribution presses: such a surrogate serves the twin of one

@@ -37,8 +37,9 @@ pub struct FastGel {
 impl FastGel {
     /// Trains a surrogate on presses of a sensor's gel. Held-out presses then show how large its
     /// errors are where few training presses pressed, which enters the OOD score
-    /// ([`FastReader::ood_score`](crate::FastReader::ood_score)). Without held-out presses this error
-    /// is unknown, and each location where a training press pressed counts as in-distribution.
+    /// ([`FastReader::ood_score`](crate::FastReader::ood_score)). Without held-out presses this
+    /// error is unknown, and each location where a training press pressed counts as
+    /// in-distribution.
     ///
     /// # Errors
     /// A press whose shape cannot exist.

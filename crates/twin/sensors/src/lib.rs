@@ -9,8 +9,7 @@
 //!   viscoelastic relaxation. [`SensorVariation`] adds what differs from sensor to sensor.
 //! - [`CoupledBatch`]: the same, with friction and loss between bodies and gels ([`Coupling`]), for
 //!   bodies that move freely.
-//! - [`SensorVariation`]: the sensor variation: the distributions from which each sensor's deviations
-//!   are drawn, read from TOML.
+//! - [`SensorVariation`]: the distributions that each sensor's deviations are drawn from, in TOML.
 //! - [`SensorState`]: everything of one sensor that a step changes.
 //!
 //! # How it works

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use twintac_config::{ConfigError, Document};
 
-/// The sensor variation: the distributions from which each sensor's deviations are drawn. Zero
-/// leaves a deviation out; [`SensorVariation::default`] is a perfect sensor. *Deviation* in the fields
-/// is the standard deviation of a normal distribution about zero.
+/// The distributions from which each sensor's deviations are drawn. Zero leaves a deviation out;
+/// [`SensorVariation::default`] is a perfect sensor. *Deviation* in the fields is the standard
+/// deviation of a normal distribution about zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SensorVariation {

@@ -52,7 +52,8 @@ pub(super) struct ReferenceFrame {
 
 impl Reference {
     /// The mean of forces and pressures of the same press on several meshes; `None` without meshes
-    /// or if they have other depths. The numbers of elements and nodes are those of the finest mesh.
+    /// or if they have other depths. The numbers of elements and nodes are those of the finest
+    /// mesh.
     pub(super) fn mean(meshes: &[&Self]) -> Option<Self> {
         let mut mean = (*meshes.iter().max_by_key(|mesh| mesh.n_elements)?).clone();
         if meshes.iter().any(|mesh| mesh.frames.len() != mean.frames.len()) {
