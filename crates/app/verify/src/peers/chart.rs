@@ -1,6 +1,6 @@
 //! The chart of force error over real-time factor.
 
-use twintac_plot::{Anchor, Ink, SMALL, Scene, text_width};
+use twintac_plot::{Anchor, Ink, PALETTE, SMALL, Scene, text_width};
 
 use super::row::Row;
 
@@ -104,9 +104,14 @@ fn name(row: &Row) -> String {
     format!("{}, {}", row.engine, row.setting)
 }
 
-/// The colour of an engine. The first one is this project's; the others have a palette of six.
+/// The colour of a setting. The first one is this project's; the others have a palette of six, and
+/// the last is grey.
 fn ink(number: usize) -> Ink {
-    number.checked_sub(1).map_or(Ink::Text, Ink::Series)
+    match number {
+        0 => Ink::Text,
+        _ if number > PALETTE.len() => Ink::Muted,
+        _ => Ink::Series(number - 1),
+    }
 }
 
 /// Relative position of a value between powers of ten, 0 to 1. Values outside are put on the edge.
