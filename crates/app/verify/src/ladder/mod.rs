@@ -118,8 +118,8 @@ pub(crate) struct Options {
     /// whose names start with this text
     #[arg(long, value_name = "CASE")]
     ccx: Option<String>,
-    /// Compute the references of test 8 on finer meshes (ten minutes a case) for the cases whose
-    /// names start with this text
+    /// Compute the references of test 8 on finer meshes (up to half an hour a case) for the cases
+    /// whose names start with this text
     #[arg(long, value_name = "CASE")]
     finer: Option<String>,
     /// Folder to which the pages are written

@@ -7,7 +7,8 @@
 //! It is smooth at `J_0` and rises without bound towards `J = 0` (the barrier of Li et al.,
 //! Incremental potential contact, ACM Trans. Graph. 39, 2020, there of a distance). Very close to
 //! zero and below, it goes on as a parabola, for materials that find their way out of a fold. It is
-//! nonzero only beside rims that a mesh is too coarse for.
+//! nonzero beside rims that a mesh is too coarse for, and where the surface moves so far in one
+//! step that a tetrahedron folds: there it may hold the fold at another equilibrium.
 
 use super::deformation::{Deformation, Vector, apply};
 use super::table::{NODES, QuadraturePoint};

@@ -45,7 +45,7 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
          work, and made all rates lower).\n\n\
          {} sensors of {} taxels with PhysTac's fast gel are stepped together on {} threads. Each is pressed by a body of its own pose, which slides and tilts at \
          every step. A reading is that of all taxels of one sensor, with force and torque. *Everything* is a trained twin's memory and all imperfections of \
-         `[imperfection]`; *perfect* is neither. All scenes take turns in one run; of {} steps each, the median counts, and 80 % lie within the range.\n\n\
+         `[variation]`; *perfect* is neither. All scenes take turns in one run; of {} steps each, the median counts, and 80 % lie within the range.\n\n\
          | body | sensors | readings a second | range |\n|---|---|---:|---:|\n",
         results.command,
         results.commit,

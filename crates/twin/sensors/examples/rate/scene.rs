@@ -23,7 +23,7 @@ const HEIGHT_MM: f64 = 8.5;
 
 /// All deviations that a sensor may have.
 const IMPERFECTION: &str = "
-[imperfection]
+[variation]
 gain_deviation = 0.05
 offset_deviation_kpa = 0.2
 drift_deviation_kpa_per_k = 0.05
@@ -99,13 +99,13 @@ impl Scene {
         twin: Option<&Twin>,
         [n_sensors, n_threads]: [usize; 2],
     ) -> Result<Self, Box<dyn Error>> {
-        let imperfection = match twin {
+        let variation = match twin {
             Some(_) => SensorVariation::parse("rate", IMPERFECTION)?,
             None => SensorVariation::default(),
         };
         let gel = FastGel::phystac()?;
         Ok(Self {
-            sensors: SensorBatch::new(&gel, twin, imperfection, [n_sensors, n_threads], 1),
+            sensors: SensorBatch::new(&gel, twin, variation, [n_sensors, n_threads], 1),
             bodies: [kind.body()?],
             touches: vec![
                 Touch {
