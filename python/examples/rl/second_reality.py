@@ -21,7 +21,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from train import load, trained_policy
 
 from twintac import Body, FastGel, Pose, Recording, Shape
 from twintac.gymnasium.policies import Policy, scripted_policy
@@ -72,6 +71,12 @@ class Bench:
         here = self.readings_kpa[0].sum(axis=0)[there] / self.force_n[0][there]
         return float(np.median(here) / np.median(fast))
 
+    def episodes(self, random: np.random.Generator) -> tuple[Double, Double, npt.NDArray[np.int64]]:
+        """Springs, N/mm, wanted forces, N, and dead taxels of the episodes of every press."""
+        n = len(self.force_n) * EPISODES_A_PRESS
+        stiffness = np.exp(random.uniform(0.0, np.log(10.0), n))
+        return stiffness, random.uniform(0.3, 3.0, (n, N_STEPS // N_SAME)), random.integers(0, 8, n)
+
     def returns(self, policy: Policy, has_dead_taxel: bool, seed: int) -> Double:
         """Returns (sums of rewards, N) of episodes of every press, with the same springs, forces,
         noise and dead taxels for every policy.
@@ -79,9 +84,7 @@ class Bench:
         random = np.random.default_rng(seed)
         press = np.repeat(np.arange(len(self.force_n)), EPISODES_A_PRESS)
         n, every = len(press), np.arange(len(press))
-        stiffness = np.exp(random.uniform(0.0, np.log(10.0), n))
-        wanted_n = random.uniform(0.3, 3.0, (n, N_STEPS // N_SAME))
-        dead = random.integers(0, 8, n)
+        stiffness, wanted_n, dead = self.episodes(random)
         shared_mm = DEPTHS_MM + self.force_n[press] / stiffness[:, None]
         travel_mm, before, total = np.full(n, -0.5), np.zeros((n, 8)), np.zeros(n)
         readings, speed = np.zeros((n, 8)), np.zeros(n)
@@ -109,6 +112,8 @@ class Bench:
 
 def main() -> None:
     """Evaluates the scripted baseline and all trained policies."""
+    from train import load, trained_policy  # needs Stable-Baselines3
+
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--recording", type=Path, required=True)
     arguments.add_argument("--policies", type=Path, required=True, help="folder that train.py wrote")
