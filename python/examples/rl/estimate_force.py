@@ -7,7 +7,7 @@ compares them on emulated benches.
 The network gets the observations of HoldForce and the list of dead taxels, and estimates the force
 and how fast it grows as the robot moves. The robot moves by the missing force over that growth. The
 network is trained with the true values of the simulation, in the states that it gets into itself
-(DAgger: Ross, Gordon and Bagnell, 2011). Needs PyTorch; `train` takes five to ten minutes.
+(DAgger: Ross, Gordon and Bagnell, 2011). Needs PyTorch; `train` takes three to six minutes.
 
 A recording for `test` is made as for second_reality.py. Several recordings, of benches whose `seed`
 differs, are several sensors.
@@ -210,9 +210,8 @@ def errors_n(bench: Bench, network: Estimator | None, has_dead_taxel: bool) -> D
 def test(recordings: list[Path], runs: Path, out: Path) -> None:
     """Evaluates all networks and the scripted baseline on every bench, and writes a table and a plot."""
     benches = {path.parent.parent.name: Bench(Recording.load(path)) for path in recordings}
-    kinds = [kind for kind in SENSORS if (runs / f"{kind}-1.pt").exists()]
     networks: dict[str, Estimator | None] = {"script": None}
-    for kind in kinds:
+    for kind in SENSORS:
         networks |= {path.stem: trained(path) for path in sorted(runs.glob(f"{kind}-*.pt"))}
     found: dict[str, list[Double]] = {}
     for name, network in networks.items():
@@ -265,6 +264,12 @@ def main() -> None:
     other.add_argument("--out", type=Path, default=Path("runs/estimate/benches.csv"), help="table; the plot beside it is a PNG (default: runs/estimate/benches.csv)")
     asked = parser.parse_args()
     torch.set_num_threads(1)
+    if asked.command == "test":
+        names = [path.parent.parent.name for path in asked.recordings]
+        if len(set(names)) < len(names):
+            other.error(f"argument --recordings: two benches have the same name, of {', '.join(names)}; the folder above recordings/ is the name")
+        if not any(asked.runs.glob("*-*.pt")):
+            other.error(f"argument --runs: {asked.runs} has no network; `train --out {asked.runs}` makes one")
     if asked.command == "train":
         train(asked.sensors, asked.seed, asked.out)
     else:
