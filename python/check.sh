@@ -17,7 +17,7 @@ echo "$(basename "$wheel"): $bytes bytes"
 "$python" -m mypy --config-file ../pyproject.toml ../twintac/arrays ../twintac/mujoco ../twintac/simulators ../twintac/widget.py
 "$python" -m mypy --config-file ../pyproject.toml ../examples ../benchmarks ../../docs/hooks.py .
 # Where Stable-Baselines3 or a simulator is not installed; and a class whose base, of untyped ipywidgets, has a metaclass of its own.
-printf '%s\n' 'twintac\.gymnasium\.sb3' 'twintac\.simulators\.(_gels|genesis|isaaclab|maniskill|mjlab|mjx|mujoco_warp|newton)' 'twintac\.widget\.GelWidget' > ../../target/not-as-typed
+printf '%s\n' 'twintac\.gymnasium\.sb3' 'twintac\.simulators\.(_gels|genesis|isaaclab|maniskill|mjlab|mjx|mujoco_warp|newton)' 'twintac\.simulators\._warp\..*' 'twintac\.widget\.GelWidget' > ../../target/not-as-typed
 "$python" -m mypy.stubtest twintac --mypy-config-file ../pyproject.toml --allowlist ../../target/not-as-typed --ignore-unused-allowlist
 "$python" -m pytest --quiet -n 2 --dist loadfile # the tests of a file share what takes long to make
 (cd ../.. && NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --strict --quiet) # target/site

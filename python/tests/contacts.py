@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twintac import Body, FastGel, Shape, arrays
+from twintac.arrays._shapes import from_samples
 
 _Float = npt.NDArray[np.float64]
 
@@ -33,7 +34,7 @@ def simple() -> list[tuple[arrays.Shapes, Shape]]:
 def meshes() -> list[tuple[arrays.Shapes, Shape]]:
     """Shapes that Rust and arrays sample."""
     shapes = [Shape.surface(CUBE, CUBES), Shape.triangle(12.0, 10.0, 0.5), Shape.wedge(1.2, 14.0, 12.0, 0.5)]
-    return [(arrays.mesh(shape), shape) for shape in shapes]
+    return [(from_samples(shape), shape) for shape in shapes]
 
 
 class Contacts(NamedTuple):

@@ -3,13 +3,14 @@ gradients agree with differences.
 """
 
 import json
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from contacts import Contacts, compiled, contacts, meshes, simple
+from contacts import CUBE, CUBES, Contacts, compiled, contacts, meshes, simple
 
 from twintac import Body, Coupling, Error, FastGel, Pose, Sensor, SensorBatch, Shape, arrays
 
@@ -455,3 +456,11 @@ def test_what_is_behind_the_sensor_does_not_press_it(gel: arrays.Gel) -> None:
                 if shape is not None:
                     touching = [(Body(shape), Pose(tuple(place_mm), tuple(quaternion)))]
                     assert not reader.read(touching)[0].any()
+
+
+def test_thin_shapes_that_are_sampled_are_named() -> None:
+    with pytest.warns(UserWarning, match=r"the shape is 1(\.\d)? mm thick .* deeper than 0\.\d+ mm, readings are too low"):
+        arrays.mesh(Shape.surface(CUBE * [1.0, 1.0, 1.2 / 9.0], CUBES))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        arrays.mesh(Shape.surface(CUBE, CUBES))

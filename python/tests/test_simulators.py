@@ -140,9 +140,9 @@ def test_blocks_rest_on_palms_in_mujoco_warp() -> None:
     assert pushed_n == pytest.approx(np.full(N_WORLDS, 1.0 + WEIGHT_N), rel=0.02)
 
 
-def test_blocks_rest_on_palms_in_mjlab() -> None:
+def in_mjlab() -> tuple[Any, Any]:
+    """Simulation and scene with a block on a palm."""
     pytest.importorskip("mjlab", reason="needs `pip install mjlab`, which brings MuJoCo 3; kernels take a minute to compile")
-    import torch
     from mjlab.entity import EntityCfg
     from mjlab.scene import Scene as MjlabScene
     from mjlab.scene import SceneCfg
@@ -164,15 +164,32 @@ def test_blocks_rest_on_palms_in_mjlab() -> None:
     simulation = Simulation(num_envs=N_WORLDS, cfg=SimulationCfg(mujoco=MujocoCfg(timestep=0.001)), model=model, device="cpu")
     scene_there.initialize(simulation.mj_model, simulation.model, simulation.data)
     scene_there.reset()
+    return simulation, scene_there
+
+
+def test_blocks_rest_on_palms_in_mjlab() -> None:
+    simulation, scene_there = in_mjlab()
+    import torch
+
     for _ in range(N_STEPS):
         scene_there.write_data_to_sim()
         simulation.step()
         scene_there.update(0.001)
     felt = scene_there["touch"].data
     is_at_rest(felt.pressure_kpa, felt.wrench, beside(palm(AT_THE_ORIGIN), N_STEPS))
-    sensors = scene_there["touch"].sensors
     scene_there.reset(torch.tensor([3]))
-    assert not sensors.memory.now.is_known[3].any() and sensors.memory.now.is_known[2].all()
+    is_known = scene_there["touch"].sensors._gels._now.is_known.numpy()
+    assert not is_known[3].any() and is_known[2].all()
+
+
+def test_steps_of_mjlab_that_were_captured_without_the_sensors_are_refused() -> None:
+    simulation, scene_there = in_mjlab()
+    simulation.model.struct.callback.control = None
+    for _ in range(2):
+        simulation.step()
+        scene_there.update(0.001)
+    with pytest.raises(RuntimeError, match=r"call `env\.sim\.create_graph\(\)`"):
+        scene_there["touch"].data
 
 
 def test_blocks_rest_on_palms_in_newton() -> None:

@@ -12,7 +12,7 @@ REACH_MM = 2.0
 
 
 # The distance of a body that is behind the sensor, mm.
-_FAR_MM = 1000.0
+FAR_MM = 1000.0
 
 
 class Near(NamedTuple):
@@ -68,7 +68,7 @@ def share_of_bodies(
         behind = behind & (lowest_mm < 0.0)
     else:
         behind = behind & (shapes.is_plane[..., None, None] | (lowest_mm < 0.0))
-    found_mm = xp.where(behind, _FAR_MM, found_mm)
+    found_mm = xp.where(behind, FAR_MM, found_mm)
     deepest_mm = xp.maximum(found_mm, -gel.deepest_mm)
     share = xp.clip((REACH_MM - deepest_mm) * (1.0 / REACH_MM), 0.0, None)
     # A body is extended only above its own bounding box. A point whose surface level is not near a

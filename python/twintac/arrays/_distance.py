@@ -11,14 +11,14 @@ from ._samples import sampled_mm
 from ._shapes import Shapes
 
 # A face counts as a top according to the height of its upward normal: not at all at the first
-# value, wholly at the second. `_MORE` is added to both for thick bodies. Below `_THIN_MM` a body is
-# thin, above `_THICK_MM` thick, mm.
-_LOOKS_UP = (0.1, 0.3)
-_MORE = 0.4
-_THIN_MM, _THICK_MM = 2.5, 3.5
+# value, wholly at the second. `MORE` is added to both for thick bodies. Below `THIN_MM` a body is
+# thin, above `THICK_MM` thick, mm.
+LOOKS_UP = (0.1, 0.3)
+MORE = 0.4
+THIN_MM, THICK_MM = 2.5, 3.5
 # Newton steps to the nearest point of an ellipsoid. Four steps find it to a thousandth of the size.
-_N_STEPS = 6
-_TINY = 1e-6
+N_STEPS = 6
+TINY = 1e-6
 
 
 def distance_mm(
@@ -164,9 +164,9 @@ def _ellipsoid_mm(
     least_mm = xp.minimum(xp.minimum(half_mm[0], half_mm[1]), half_mm[2])
     over_mm2 = [half**2 - least_mm**2 for half in half_mm]
     # The nearest point is `half² away / (shift + half² - least²)`, with one shift for all axes.
-    reach_mm2 = [half * (away + _TINY * least_mm) for half, away in zip(half_mm, away_mm)]
+    reach_mm2 = [half * (away + TINY * least_mm) for half, away in zip(half_mm, away_mm)]
     shift = _largest(xp, [reach - over for reach, over in zip(reach_mm2, over_mm2)])
-    for _ in range(_N_STEPS):
+    for _ in range(N_STEPS):
         parts = [(reach / (shift + over)) ** 2 for reach, over in zip(reach_mm2, over_mm2)]
         length2 = parts[0] + parts[1] + parts[2]
         slope = sum(part / (shift + over) for part, over in zip(parts, over_mm2))
@@ -187,9 +187,9 @@ def _over_sides_mm(xp: Any, beyond_mm: list[Array]) -> Array:
 
 def _top(xp: Any, height: Array, thick_mm: Array) -> Array:
     """The degree to which a face counts as a top, 0 to 1."""
-    thick = xp.clip((thick_mm - _THIN_MM) / (_THICK_MM - _THIN_MM), 0.0, 1.0)
-    side, top = _LOOKS_UP
-    part = xp.clip((height - side - _MORE * thick) / (top - side), 0.0, 1.0)
+    thick = xp.clip((thick_mm - THIN_MM) / (THICK_MM - THIN_MM), 0.0, 1.0)
+    side, top = LOOKS_UP
+    part = xp.clip((height - side - MORE * thick) / (top - side), 0.0, 1.0)
     return part * part * (3.0 - 2.0 * part)
 
 

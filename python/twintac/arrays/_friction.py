@@ -27,17 +27,17 @@ _Floats = npt.NDArray[np.float64]
 
 # A point carries a body if it lies inside it by more than this fraction of the largest depth; width
 # of the transition, as such a fraction.
-_CARRYING, _CHANGE = 0.38, 0.24
+CARRYING, CHANGE = 0.38, 0.24
 # Smallest thickness of the gel under a body, as a fraction of its undeformed thickness.
-_THINNEST = 0.4
-_LEAST_RADIUS_MM = 0.5
+THINNEST = 0.4
+LEAST_RADIUS_MM = 0.5
 # Lever arm of the friction that resists rotation about the contact's middle, as a fraction of the
 # contact's radius.
-_ARM_OF_RADIUS = 0.6
+ARM_OF_RADIUS = 0.6
 # The table of the pressure at the gel's base under a tangential force: spacing and end of its
 # distances, in heights of the gel; step and end of the wave numbers that are summed, in radians per
 # height.
-_STEP, _FURTHEST = 0.02, 5.0
+STEP, _FURTHEST = 0.02, 5.0
 _WAVE_STEP, _SHORTEST_WAVE = 0.05, 25.0
 _N_NODES = 256
 
@@ -260,14 +260,14 @@ def _footprint(xp: Any, gel: Gel, friction: Friction, share: Array) -> _Footprin
     deepest = xp.max(depth, axis=-1)
     touches = deepest > 0.0
     inside = depth / xp.where(touches, deepest, 1.0)[..., None]
-    part = xp.clip((inside - _CARRYING) / _CHANGE + 0.5, 0.0, 1.0)
+    part = xp.clip((inside - CARRYING) / CHANGE + 0.5, 0.0, 1.0)
     part = xp.where(touches[..., None], part, 0.0)
     # Of points that are equally deep, the last one counts.
     order = friction.order
     last = xp.max(xp.where(depth == deepest[..., None], order, 0.0), axis=-1)
     is_last = order == last[..., None]
     height_mm = xp.sum(xp.where(is_last, gel.points_mm[2, :n_points], 0.0), axis=-1)
-    thickness_mm = xp.maximum(height_mm - deepest * REACH_MM, _THINNEST * height_mm)
+    thickness_mm = xp.maximum(height_mm - deepest * REACH_MM, THINNEST * height_mm)
     return _Footprint(touches, part, friction.area_mm2 * xp.sum(part, axis=-1), thickness_mm)
 
 
@@ -287,7 +287,7 @@ def _hold(
     x_mm, y_mm = -wrench[..., 4] / down_n, wrench[..., 3] / down_n
     moved_mm, turned_rad = _moved(xp, gel, before, position_mm, rotation, x_mm, y_mm)
     was_held = before.is_held
-    radius_mm = xp.clip(root(xp, foot.area_mm2 / math.pi), _LEAST_RADIUS_MM, None)
+    radius_mm = xp.clip(root(xp, foot.area_mm2 / math.pi), LEAST_RADIUS_MM, None)
     modulus = friction.shear_modulus_n_per_mm2
     along = 8.0 * modulus * radius_mm / (2.0 - friction.poissons_ratio)
     along = along * (1.0 + 0.5 * radius_mm / friction.height_mm)
@@ -299,7 +299,7 @@ def _hold(
     torque_n_mm = xp.where(was_held, before.torque_n_mm + about * turned_rad, 0.0)
     normal_n = root(xp, xp.sum(wrench[..., :3] ** 2, axis=-1))
     limit_n = friction.coefficient * normal_n
-    arm_n = torque_n_mm / (_ARM_OF_RADIUS * radius_mm)
+    arm_n = torque_n_mm / (ARM_OF_RADIUS * radius_mm)
     needed_n = root(xp, force_n[0] ** 2 + force_n[1] ** 2 + arm_n**2)
     slips = needed_n > limit_n
     kept = xp.where(slips, limit_n / xp.where(slips, needed_n, 1.0), 1.0)
@@ -367,7 +367,7 @@ def _pulled_kpa(xp: Any, friction: Friction, foot: _Footprint, force_n: Array) -
     """
     height_mm = xp.where(foot.touches, foot.thickness_mm, 1.0)
     n_entries = friction.kernel.shape[0]
-    entries = friction.away_mm / (_STEP * height_mm[..., None, None])
+    entries = friction.away_mm / (STEP * height_mm[..., None, None])
     inside = xp.clip(entries, 0.0, n_entries - 1.001)
     entry = xp.floor(inside)
     number = xp.reshape(xp.astype(entry, xp.int32), (-1,))
@@ -420,7 +420,7 @@ def _kernel(poissons_ratio: float) -> _Floats:
     below = (2.0 * (1.0 - poissons_ratio) * cosh) ** 2 + wave**2 - (compressible * sinh) ** 2
     pressure = 2.0 / 3.0 * (1.0 + poissons_ratio) * (compressible * sinh + wave * cosh) / below
     part = pressure * wave * _WAVE_STEP / (2.0 * np.pi)
-    distance = _STEP * np.arange(int(_FURTHEST / _STEP) + 1)
+    distance = STEP * np.arange(int(_FURTHEST / STEP) + 1)
     # The Bessel function of the first order by its integral, whose sum converges quickly.
     angle = np.pi * (np.arange(_N_NODES) + 0.5) / _N_NODES
     found = np.zeros(len(distance))

@@ -16,9 +16,9 @@ _Floats = npt.NDArray[np.float64]
 N_LEVELS = 3
 # Heights of the levels at which distances are evaluated, and the largest depth that counts, mm, for
 # points 2 mm apart; in proportion for points that are farther apart.
-_LEVELS_MM = (0.0, -1.5, -3.0)
+LEVELS_MM = (0.0, -1.5, -3.0)
 _DEEPEST_MM = 4.0
-_SPACING_MM = 2.0
+SPACING_MM = 2.0
 # Gap up to which a contact counts wholly, and gap from which nothing touches, in spacings of
 # points: a body may touch between points.
 _TOUCHED = (0.05, 0.25)
@@ -113,7 +113,7 @@ def load(source: FastGel | str | os.PathLike[str] | bytes, *, like: Array | None
     return convert(gel, np.zeros(0, np.float32) if like is None else like)
 
 
-class _Grid(NamedTuple):
+class Grid(NamedTuple):
     first_mm: _Floats
     spacing_mm: float
     n: tuple[int, int]
@@ -151,20 +151,20 @@ class _Grid(NamedTuple):
         return float(rows[0] + part[1] * (rows[1] - rows[0]))
 
 
-def _grids(header: dict[str, Any]) -> list[_Grid]:
-    found: list[_Grid] = []
+def grids_of(header: dict[str, Any]) -> list[Grid]:
+    found: list[Grid] = []
     first_point = 0
     for grid in header["layout"]["grids"]:
         height_mm = np.array(grid["height_mm"], np.float64)
         n = (int(grid["n"][0]), int(grid["n"][1]))
         first_mm = np.array(grid["first_mm"], np.float64)
-        found.append(_Grid(first_mm, float(grid["spacing_mm"]), n, height_mm, first_point))
+        found.append(Grid(first_mm, float(grid["spacing_mm"]), n, height_mm, first_point))
         first_point += len(height_mm)
     return found
 
 
 def _gel(file: File) -> Gel:
-    header, grids = file.header, _grids(file.header)
+    header, grids = file.header, grids_of(file.header)
     points, levels, deepest, highest = [], [], [], []
     for grid in grids:
         row, column = np.divmod(np.arange(len(grid.height_mm)), grid.n[0])
@@ -172,8 +172,8 @@ def _gel(file: File) -> Gel:
             grid.first_mm[axis] + grid.spacing_mm * part for axis, part in enumerate((column, row))
         )
         points.append(np.stack([x_mm, y_mm, grid.height_mm]))
-        scale = max(grid.spacing_mm / _SPACING_MM, 1.0)
-        levels.append(np.tile(np.multiply(_LEVELS_MM, scale), (len(row), 1)))
+        scale = max(grid.spacing_mm / SPACING_MM, 1.0)
+        levels.append(np.tile(np.multiply(LEVELS_MM, scale), (len(row), 1)))
         deepest.append(np.full((len(row), 1), scale * _DEEPEST_MM))
         highest.append(np.full(len(row), grid.height_mm.max()))
     highest_mm = np.concatenate(highest)
@@ -190,7 +190,7 @@ def _gel(file: File) -> Gel:
     )
 
 
-def _pressure(file: File, grids: list[_Grid]) -> Network:
+def _pressure(file: File, grids: list[Grid]) -> Network:
     """The network of the pressures: of all taxels together if there is one, else of patches."""
     n_ports = len(file.header["ports_mm"])
     if file.layers("taxels"):
@@ -198,7 +198,7 @@ def _pressure(file: File, grids: list[_Grid]) -> Network:
     return _of_patches(file, grids)
 
 
-def _of_all_points(file: File, name: str, grid: _Grid, unit: _Floats) -> Network:
+def _of_all_points(file: File, name: str, grid: Grid, unit: _Floats) -> Network:
     """A network of one row that sees all points of a grid."""
     point, first, *rest = (Layer(*layer) for layer in file.layers(name))
     n_inputs = len(grid.height_mm) * len(point.bias)
@@ -212,7 +212,7 @@ def _of_all_points(file: File, name: str, grid: _Grid, unit: _Floats) -> Network
     )
 
 
-def _of_patches(file: File, grids: list[_Grid]) -> Network:
+def _of_patches(file: File, grids: list[Grid]) -> Network:
     """A network with a row for each port; the row sees the points of the port's patch."""
     point, first, *rest = (Layer(*layer) for layer in file.layers("pressure"))
     offsets = [(int(i), int(j)) for i, j in file.header["layout"]["patch"]["offsets"]]
@@ -265,7 +265,7 @@ def _patch(
     return found
 
 
-def _describe(header: dict[str, Any], grid: _Grid, at_mm: _Floats) -> _Floats:
+def _describe(header: dict[str, Any], grid: Grid, at_mm: _Floats) -> _Floats:
     """Features of a location at the base of the gel, `[13]`: the proximity of each edge and its
     square, and how much lower the gel is than at its highest point, above the location and on each
     side.

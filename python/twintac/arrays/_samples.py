@@ -18,6 +18,10 @@ _CELLS_OF_THICKNESS = 6.0
 _MOST_SAMPLES = 4e6
 _REACH_MM = 2.0
 
+# A body counts as infinitely thick above this thickness, mm; step into a body, mm; components of
+# normals are rounded to multiples of one over `_NORMALS`.
+_THICKEST_MM, _STEP_MM, _NORMALS = 12.0, 0.25, 4.0
+
 
 class Samples(NamedTuple):
     """Distances of shapes at the corners of the cells of grids. One array holds the samples of all
@@ -43,6 +47,10 @@ class Samples(NamedTuple):
             cells_per_mm=xp.astype(self.cells_per_mm, precision, copy=False),
         )
 
+    def of(self, body: int) -> "Samples":
+        """The samples of one of the bodies `[n_bodies]`."""
+        return Samples(self.distance_mm, *(part[body] for part in self[1:]))
+
     @staticmethod
     def stack(all: "Sequence[Samples | None]", leading: tuple[int, ...]) -> "Samples | None":
         """The samples of several shapes along a new first dimension. A shape without samples gets
@@ -50,18 +58,11 @@ class Samples(NamedTuple):
         """
         if not any(own is not None for own in all):
             return None
-        nothing = Samples(
-            distance_mm=np.full(8, _REACH_MM, np.float32),
-            first=np.zeros(leading, np.int32),
-            n_cells=np.ones((*leading, 3), np.int32),
-            low_mm=np.zeros((*leading, 3)),
-            cells_per_mm=np.ones((*leading, 3)),
-        )
         known: dict[bytes, int] = {}
         values: list[Any] = []
         parts: list[Samples] = []
         n_samples = 0
-        for own in (nothing if own is None else own for own in all):
+        for own in (one_cell(leading) if own is None else own for own in all):
             key = own.distance_mm.tobytes()
             if key not in known:
                 known[key] = n_samples
@@ -72,6 +73,17 @@ class Samples(NamedTuple):
         return Samples(np.concatenate(values), *columns)
 
 
+def one_cell(leading: tuple[int, ...]) -> Samples:
+    """Samples of one cell, for shapes without samples: nothing reads them."""
+    return Samples(
+        distance_mm=np.full(8, _REACH_MM, np.float32),
+        first=np.zeros(leading, np.int32),
+        n_cells=np.ones((*leading, 3), np.int32),
+        low_mm=np.zeros((*leading, 3)),
+        cells_per_mm=np.ones((*leading, 3)),
+    )
+
+
 def sampled(shape: Shape) -> tuple[Samples, _Floats]:
     """Samples of a shape, and the corners of its bounding box, mm, `[2, 3]`."""
     low_mm, high_mm = bounds_mm = shape.bounds_mm
@@ -80,8 +92,7 @@ def sampled(shape: Shape) -> tuple[Samples, _Floats]:
     finer_mm = np.minimum(even_mm, (high_mm - low_mm) / _CELLS_OF_THICKNESS)
     is_many = volume_mm3 / np.prod(finer_mm) > _MOST_SAMPLES
     spacing_mm = even_mm if is_many else finer_mm
-    around_mm = _REACH_MM + spacing_mm
-    first_mm, last_mm = low_mm - around_mm, high_mm + around_mm
+    first_mm, last_mm = low_mm - _REACH_MM - spacing_mm, high_mm + _REACH_MM + spacing_mm
     n_cells = np.ceil((last_mm - first_mm) / spacing_mm).astype(np.int32)
     axes = [first_mm[axis] + spacing_mm[axis] * np.arange(n_cells[axis] + 1) for axis in range(3)]
     corners_mm = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -93,6 +104,44 @@ def sampled(shape: Shape) -> tuple[Samples, _Floats]:
         cells_per_mm=1.0 / spacing_mm,
     )
     return samples, bounds_mm
+
+
+def thin_faces(samples: Samples) -> tuple[_Floats, _Floats]:
+    """Faces of a sampled shape under which it is thin: outward normals, `[n, 3]`, and half of the
+    smallest thickness under such faces, mm, `[n]`. `samples` are those of one shape.
+    """
+
+    def at_mm(points_mm: _Floats) -> _Floats:
+        axes = [points_mm[:, axis, None] for axis in range(3)]
+        found: _Floats = sampled_mm(np, samples, axes)[:, 0]
+        return found
+
+    step_mm = 1.0 / samples.cells_per_mm
+    n = samples.n_cells + 1
+    own_mm = samples.distance_mm[int(samples.first) :][: int(np.prod(n))].reshape(n)
+    is_near = np.abs(own_mm) < 0.5 * step_mm.max()
+    point_mm = samples.low_mm + step_mm * np.argwhere(is_near)
+    steps = _STEP_MM * np.eye(3)
+    slope = np.stack([at_mm(point_mm + step) - at_mm(point_mm - step) for step in steps], axis=-1)
+    length = np.linalg.norm(slope, axis=-1)
+    point_mm, normal = point_mm[length > 0.0], (slope / length[:, None])[length > 0.0]
+    surface_mm = point_mm - at_mm(point_mm)[:, None] * normal
+    half_mm = np.full(len(normal), np.inf)
+    for number in range(1, int(_THICKEST_MM / _STEP_MM)):
+        left = np.flatnonzero(np.isinf(half_mm))
+        is_out = at_mm(surface_mm[left] - _STEP_MM * number * normal[left]) > 0.0
+        half_mm[left[is_out]] = 0.5 * _STEP_MM * (number - 1)
+    is_thin = np.isfinite(half_mm)
+    keys, which = np.unique(np.rint(_NORMALS * normal[is_thin]), axis=0, return_inverse=True)
+    least_mm = np.full(len(keys), np.inf)
+    np.minimum.at(least_mm, which.reshape(-1), half_mm[is_thin])
+    has_way = np.linalg.norm(keys, axis=-1) > 0.0
+    return keys[has_way] / np.linalg.norm(keys[has_way], axis=-1, keepdims=True), least_mm[has_way]
+
+
+def thinnest_mm(samples: Samples) -> float:
+    """The smallest thickness of one shape, mm; infinite for a thick one."""
+    return 2.0 * float(min(thin_faces(samples)[1], default=np.inf))
 
 
 def sampled_mm(xp: Any, samples: Samples, point_mm: list[Array]) -> Array:

@@ -1,5 +1,6 @@
 """Rigid shapes as arrays of numbers."""
 
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -8,7 +9,7 @@ import numpy.typing as npt
 
 from .. import Shape
 from ._namespace import Array, check_same_library, namespace, refuse
-from ._samples import Samples, sampled
+from ._samples import Samples, sampled, thinnest_mm
 
 _Floats = npt.NDArray[np.float64]
 
@@ -47,6 +48,8 @@ class Shapes(NamedTuple):
         )
 
 
+# Presses are seldom deeper than half of this thickness.
+_THIN_MM = 4.0
 _MASKS = ("is_box", "is_cylinder", "is_ellipsoid", "is_plane", "is_sampled")
 
 
@@ -156,13 +159,38 @@ def plane() -> Shapes:
 def mesh(shape: Shape) -> Shapes:
     """Any `Shape` by samples of its distance, in its own frame: triangle meshes (`Shape.surface`,
     `Shape.stl`), unions, rings. Sampling takes from a millisecond to several seconds, for shapes of
-    many triangles and for large ones. The readings of a body that is pressed deeper than it is
-    thick are too low, down to zero: samples do not say that a gel is never above a body.
+    many triangles and for large ones. The readings of a body that is pressed deeper than half of its
+    thickness are too low, down to zero: samples do not say that a gel is never above a body. A
+    warning says it of bodies that are thinner than 4 mm.
     """
+    found = from_samples(shape)
+    if (least_mm := thinnest(found)) is not None:
+        warnings.warn(f"the shape is {too_thin(least_mm)}", stacklevel=2)
+    return found
+
+
+def from_samples(shape: Shape) -> Shapes:
+    """As `mesh`, without a warning."""
     samples, bounds_mm = sampled(shape)
     middle_mm, half_mm = bounds_mm.mean(axis=0), 0.5 * (bounds_mm[1] - bounds_mm[0])
     found = _shape(half_mm, 0.0, 0.0, is_sampled=True)
     return found._replace(middle_mm=middle_mm, samples=samples)
+
+
+def thinnest(shape: Shapes) -> float | None:
+    """The smallest thickness of one shape that is sampled, mm, if it matters: `None` if no press is
+    likely to be deeper than half of it.
+    """
+    least_mm = np.inf if shape.samples is None else thinnest_mm(shape.samples)
+    return least_mm if least_mm < _THIN_MM else None
+
+
+def too_thin(thickness_mm: float) -> str:
+    """What happens to a shape that is so thin, for a warning."""
+    return (
+        f"{thickness_mm:.2g} mm thick at its thinnest, and is known by samples: where this part is "
+        f"pressed deeper than {0.5 * thickness_mm:.2g} mm, readings are too low, down to zero"
+    )
 
 
 def centered(shapes: Shapes) -> Shapes:

@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import FastGel, Shape, arrays
 from ..arrays._namespace import Array
+from ..arrays._shapes import from_samples
 from ..mujoco._geoms import colliding, filtered, number_of
 from ..mujoco._shapes import HFIELD, MESH, contents, surface_of
 from ._scene import Places, Scene, scene
@@ -23,6 +24,7 @@ def scene_of(
     retardation_s: float = 0.005,
     geoms: Sequence[str] | None = None,
     like: Array | None = None,
+    follows_thin: bool = False,
 ) -> Scene:
     """Sensors at sites that are the frames of their gels, as `twintac.mujoco.add_sensor` makes
     them, and the geoms with the given names, or all that collide.
@@ -47,7 +49,7 @@ def scene_of(
         apart=filtered(model, of_sensor, of_geom, by_family=geoms is None),
     )
     shapes = [_shape(model, int(number)) for number in geom]
-    return scene(places, shapes, gel, friction, retardation_s, like)
+    return scene(places, shapes, gel, friction, retardation_s, like, follows_thin=follows_thin)
 
 
 def _shape(model: mujoco.MjModel, geom: int) -> arrays.Shapes:
@@ -55,7 +57,7 @@ def _shape(model: mujoco.MjModel, geom: int) -> arrays.Shapes:
     kind, asset = int(model.geom_type[geom]), int(model.geom_dataid[geom])
     if kind in (MESH, HFIELD):
         corners_mm, triangles = surface_of(kind, contents(model, kind, asset))
-        return arrays.mesh(Shape.surface(corners_mm, triangles))
+        return from_samples(Shape.surface(corners_mm, triangles))
     of_kind = mujoco.mjtGeom(kind).name
     shape = primitive(of_kind.removeprefix("mjGEOM_"), model.geom_size[geom])
     if shape is None:

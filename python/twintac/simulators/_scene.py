@@ -1,6 +1,7 @@
 """Sensors on bodies, and the geoms that can touch them, as arrays."""
 
 import os
+import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ import numpy.typing as npt
 
 from .. import FastGel, arrays
 from ..arrays._namespace import Array
+from ..arrays._shapes import thinnest, too_thin
 
 _Ints = npt.NDArray[np.intp]
 
@@ -60,15 +62,21 @@ def scene(
     friction: float,
     retardation_s: float,
     like: Array | None,
+    *,
+    follows_thin: bool = False,
 ) -> Scene:
     """The scene as arrays of the library, precision and device of `like`; the adapters describe the
-    arguments.
+    arguments. Unless what evaluates the scene follows thin bodies upward (`follows_thin`), a warning
+    says which shapes are thin and known by samples.
 
     Raises `ValueError` if there is nothing to touch, or nothing that moves.
     """
     if not len(places.site) or not len(places.geom):
         has_none = "`sites` has none" if not len(places.site) else "there is no shape that can touch"
         raise ValueError(f"{has_none}, expected at least one")
+    for number, shape in enumerate(shapes):
+        if not follows_thin and (least_mm := thinnest(shape)) is not None:
+            warnings.warn(f"shape {number} of those that can touch is {too_thin(least_mm)}", stacklevel=3)
     source = FastGel.phystac() if gel is None else gel
     of_sensor, of_geom = places.body_of_sensor, places.body_of_geom
     body = np.unique(np.concatenate([of_sensor, of_geom]))

@@ -14,6 +14,7 @@ import numpy as np
 import torch
 
 from .. import FastGel, Shape, arrays
+from ..arrays._shapes import from_samples
 from ._gels import Gels, local_pose, placed, rotation_of
 from ._moment import Memory, Poses, Touch
 from ._scene import Places
@@ -121,7 +122,7 @@ def _shape(geom: Any) -> arrays.Shapes:
     kind = geom.type
     if kind in (gs.GEOM_TYPE.MESH, gs.GEOM_TYPE.TERRAIN):
         corners_mm = 1e3 * np.asarray(geom.init_verts, float)
-        return arrays.mesh(Shape.surface(corners_mm, np.asarray(geom.init_faces).reshape(-1, 3)))
+        return from_samples(Shape.surface(corners_mm, np.asarray(geom.init_faces).reshape(-1, 3)))
     half_m = np.asarray(geom.data, float)
     if kind == gs.GEOM_TYPE.BOX:
         half_m = 0.5 * half_m

@@ -21,6 +21,7 @@ from mani_skill.utils.structs import Actor, Link
 from sapien import Pose, physx
 
 from .. import FastGel, Shape, arrays
+from ..arrays._shapes import from_samples
 from ._gels import Gels, local_pose, placed, rotation_of
 from ._moment import Memory, Poses, Touch
 from ._scene import Places
@@ -191,7 +192,7 @@ def _placed(body: Actor | Link, shape: Any) -> _Placed:
     if isinstance(shape, physx.PhysxCollisionShapeConvexMesh | physx.PhysxCollisionShapeTriangleMesh):
         corners_mm = 1e3 * shape.vertices * shape.scale
         triangles = np.asarray(shape.triangles, np.int64).reshape(-1, 3)
-        return arrays.mesh(Shape.surface(corners_mm.astype(float), triangles)), position_mm, quaternion
+        return from_samples(Shape.surface(corners_mm.astype(float), triangles)), position_mm, quaternion
     half_m = [getattr(shape, name) for name in ("radius", "half_length") if hasattr(shape, name)]
     found = primitive(kind, getattr(shape, "half_size", half_m))
     if found is None:

@@ -16,6 +16,7 @@ from typing import Any
 
 import mujoco
 import torch
+import warp as wp
 from mjlab.sensor import Sensor as MjlabSensor
 from mjlab.sensor import SensorCfg
 
@@ -29,8 +30,8 @@ __all__ = ["Touch", "TouchSensor", "TouchSensorCfg"]
 
 @dataclass
 class TouchSensorCfg(SensorCfg):  # type: ignore[misc, unused-ignore]
-    """Sensors of one kind in a scene, for `SceneCfg.sensors`. They have not been tried on a GPU,
-    where mjlab captures steps.
+    """Sensors of one kind in a scene, for `SceneCfg.sensors`. On a GPU, mjlab captures its steps
+    before it initializes sensors: call `env.sim.create_graph()` when the environment is made.
     """
 
     bodies: tuple[str, ...] = ()
@@ -69,6 +70,9 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         super().__init__()
         self.cfg = cfg
         self.sensors: Sensors
+        self._data: Any
+        self._step_s: float
+        self._is_called = False
 
     def edit_spec(self, scene_spec: mujoco.MjSpec, entities: dict[str, Any]) -> None:
         """Adds the sensors to their bodies."""
@@ -90,6 +94,7 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         cfg = self.cfg
         # The objects of MuJoCo Warp, which mjlab wraps.
         model, data = (getattr(own, "struct", own) for own in (model, data))
+        self._data, self._step_s = data, float(mj_model.opt.timestep)
         self.sensors = Sensors(
             mj_model,
             data,
@@ -114,7 +119,22 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         self.sensors.forget(env_ids)
 
     def _compute_data(self) -> Touch:
+        if not self._is_called:
+            self._check_calls()
         return self.sensors.touch
+
+    def _check_calls(self) -> None:
+        """Checks, until the first steps have been made, that MuJoCo Warp calls the sensors in each
+        of them: a captured step calls only what was there when it was captured.
+        """
+        behind_s = float((wp.to_torch(self._data.time) - self.sensors.time_s).max())
+        if behind_s > 1.5 * self._step_s:
+            raise RuntimeError(
+                "the simulation makes steps without the touch sensors, because it captured them "
+                "before the sensors were there: call `env.sim.create_graph()` once when the "
+                "environment is made"
+            )
+        self._is_called = bool(self.sensors.time_s.max() > self._step_s)
 
     def _sites(self) -> list[str]:
         return [f"{self.cfg.name}/{number}" for number in range(len(self.cfg.bodies))]

@@ -1,12 +1,12 @@
-"""Touch in MuJoCo Warp, with PyTorch on the device of its data. It needs `mujoco-warp` and `torch`.
+"""Touch in MuJoCo Warp, on the device of its data. It needs `mujoco-warp` and `torch`.
 
     sensors = Sensors(model, data, ["palm"])  # of a mujoco.MjModel, and data of MuJoCo Warp
     warp_model.callback.control = sensors
     mujoco_warp.step(warp_model, data)
     sensors.touch.pressure_kpa                # [n_worlds, n_sensors, n_taxels], a tensor
 
-MuJoCo Warp calls the sensors in each step, when poses are known and forces are not. They have not
-been tried inside of a captured CUDA graph.
+MuJoCo Warp calls the sensors in each step, when poses are known and forces are not. The sensors
+launch kernels of Warp alone, so that steps can be captured in a graph.
 """
 
 import os
@@ -18,10 +18,11 @@ import torch
 import warp as wp
 
 from .. import FastGel
-from ._moment import Memory, Poses, Touch, begin, forget, moment
+from ._moment import Poses, Touch
 from ._mujoco import scene_of
+from ._warp import Gels
 
-__all__ = ["Memory", "Sensors", "Touch"]
+__all__ = ["Sensors", "Touch"]
 
 
 class Sensors:
@@ -59,17 +60,22 @@ class Sensors:
         retardation_s: float = 0.005,
         geoms: Sequence[str] | None = None,
     ) -> None:
-        time_s = wp.to_torch(data.time)
         kept: dict[str, Any] = {"friction": friction, "retardation_s": retardation_s}
-        self.scene = scene_of(model, sites, gel=gel, geoms=geoms, like=time_s, **kept)
-        self.memory: Memory = begin(self.scene, _poses(data), time_s)
-        """The state of the gels; it may be set to an earlier state."""
-        self.applied = torch.zeros_like(wp.to_torch(data.xfrc_applied))
+        self.scene = scene_of(model, sites, gel=gel, geoms=geoms, follows_thin=True, **kept)
+        self._gels = Gels(self.scene, gel, data.nworld, data.time.device)
+        self._body = wp.array(self.scene.body, dtype=int, device=data.time.device)
+        self._applied = wp.zeros_like(data.xfrc_applied)
+        self.applied: torch.Tensor = wp.to_torch(self._applied)
         """Your own forces on the bodies that the gels push, as in `xfrc_applied`: force, N, and
         torque, N m, `[n_worlds, n_bodies, 6]`.
         """
-        _, self.touch = moment(self.scene, self.memory, _poses(data), time_s)
-        """The last output of the sensors."""
+        self.touch: Touch = self._gels.touch()
+        """The last output of the sensors: tensors that each step changes."""
+        self.time_s: torch.Tensor = wp.to_torch(self._gels.time_s)
+        """The simulator's time of the last output, s, `[n_worlds]`."""
+        self._gels.begin(data.time)
+        self._gels.tell_time(data.time)
+        self._gels.launch(_poses(data))
 
     def __call__(self, model: Any, data: Any) -> None:
         """Reads the poses of `data`, and writes the forces of the gels on bodies into
@@ -79,11 +85,16 @@ class Sensors:
             model: the model of MuJoCo Warp, which is not used.
             data: the data of MuJoCo Warp.
         """
-        with torch.no_grad():
-            time_s = wp.to_torch(data.time)
-            self.memory, self.touch = moment(self.scene, self.memory, _poses(data), time_s)
-            body = self.scene.body
-            wp.to_torch(data.xfrc_applied)[:, body] = self.applied[:, body] + self.touch.push
+        self._gels.tell_time(data.time)
+        self._gels.launch(_poses(data))
+        push = self._gels.push
+        wp.launch(
+            _apply,
+            push.shape,
+            inputs=[self._body, self._applied, push],
+            outputs=[data.xfrc_applied],
+            device=push.device,
+        )
 
     def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
         """Resets the gels.
@@ -91,21 +102,19 @@ class Sensors:
         Args:
             worlds: indices of the worlds, or a mask; all worlds unless given.
         """
-        chosen = torch.zeros_like(self.memory.time_s, dtype=torch.bool)
-        chosen[slice(None) if worlds is None else worlds] = True
-        self.memory = forget(self.memory, chosen)
+        self._gels.forget(worlds)
+
+
+@wp.kernel
+def _apply(
+    body: wp.array[int],
+    applied: wp.array2d[wp.spatial_vector],
+    push: wp.array2d[wp.spatial_vector],
+    xfrc_applied: wp.array2d[wp.spatial_vector],
+) -> None:
+    w, b = wp.tid()
+    xfrc_applied[w, body[b]] = applied[w, body[b]] + push[w, b]
 
 
 def _poses(data: Any) -> Poses:
-    return Poses(
-        *(
-            wp.to_torch(rows)
-            for rows in (
-                data.site_xpos,
-                data.site_xmat,
-                data.geom_xpos,
-                data.geom_xmat,
-                data.xipos,
-            )
-        )
-    )
+    return Poses(data.site_xpos, data.site_xmat, data.geom_xpos, data.geom_xmat, data.xipos)

@@ -1,12 +1,12 @@
-"""Touch in Newton, with PyTorch on the device of its state. It needs `newton` and `torch`.
+"""Touch in Newton, on the device of its state. It needs `newton` and `torch`.
 
     sensors = Sensors(model, ["*touch"], shapes=["*block"])  # sites and shapes, by their labels
     state.clear_forces()
     touch = sensors.push(state, dt)                          # adds to state.body_f
     solver.step(state, state_after, control, contacts, dt)
 
-Each site (`builder.add_site`) is the frame of a gel, with z out of the board. The sensors have not
-been tried inside of a captured CUDA graph.
+Each site (`builder.add_site`) is the frame of a gel, with z out of the board. The sensors launch
+kernels of Warp alone, so that `push` and the solver's step can be captured in a graph.
 """
 
 import os
@@ -20,17 +20,18 @@ import torch
 import warp as wp
 
 from .. import FastGel, Shape, arrays
-from ._gels import Gels, placed
-from ._moment import Memory, Poses, Touch
+from ..arrays._shapes import from_samples
+from ._moment import Poses, Touch
 from ._scene import Places, scene
 from ._shapes import primitive
+from ._warp import Gels
 
-__all__ = ["Memory", "Sensors", "Touch"]
+__all__ = ["Sensors", "Touch"]
 
 _Ints = npt.NDArray[np.intp]
 
 
-class Sensors(Gels):
+class Sensors:
     """Sensors in all worlds of a model. The worlds must be alike.
 
     Shapes that touch gels should not collide with the sensor's body: the body would carry them
@@ -80,18 +81,35 @@ class Sensors(Gels):
             part_of=part_of,
         )
         felt = [_shape(model, shape[:, place]) for place in range(shape.shape[1])]
-        like = wp.to_torch(model.body_q)
-        found = scene(places, felt, gel, friction, retardation_s, like)
+        self.scene = scene(
+            places, felt, gel, friction, retardation_s, None, follows_thin=True
+        )
         # For each world, the indices of the corresponding bodies.
         in_worlds = np.full((len(chosen), len(own)), -1)
         for place, number in enumerate(local):
             in_worlds[:, number] = body[chosen[:, place]]
-        self._local = wp.to_torch(model.shape_transform)[torch.tensor(chosen, device=like.device)]
-        self._body_of = torch.tensor(body[chosen], device=like.device)
-        self._body = torch.tensor(in_worlds, device=like.device)
-        self._middle = wp.to_torch(model.body_com)
-        self._n_sites = n_sites
-        self._begin(found, self._poses(model.body_q))
+        device = model.body_q.device
+        transforms = model.shape_transform.numpy()[chosen]
+        self._local = wp.array(transforms, dtype=wp.transform, device=device)
+        self._body_of = wp.array(body[chosen], dtype=int, device=device)
+        self._body = wp.array(in_worlds, dtype=int, device=device)
+        self._pushed = wp.array(in_worlds[:, self.scene.body], dtype=int, device=device)
+        self._middle_m = model.body_com
+        n_worlds, n_places = chosen.shape
+        self._position_m = wp.zeros((n_worlds, n_places), dtype=wp.vec3, device=device)
+        self._rotation = wp.zeros((n_worlds, n_places), dtype=wp.mat33, device=device)
+        self._middle_in_world_m = wp.zeros((n_worlds, len(own)), dtype=wp.vec3, device=device)
+        # The sites come first, then the shapes.
+        self._poses = Poses(
+            self._position_m[:, :n_sites],
+            self._rotation[:, :n_sites],
+            self._position_m[:, n_sites:],
+            self._rotation[:, n_sites:],
+            self._middle_in_world_m,
+        )
+        self._gels = Gels(self.scene, gel, n_worlds, device)
+        self.touch: Touch = self._gels.touch()
+        """The last output of the sensors: tensors that each push changes."""
 
     def push(self, state: newton.State, dt: float) -> Touch:
         """Reads the sensors, and adds the forces of the gels on bodies to `state.body_f`. Call
@@ -102,33 +120,77 @@ class Sensors(Gels):
             dt: time since the last call, s.
 
         Returns:
-            The output of the sensors.
+            The output of the sensors, which is `touch`.
         """
-        with torch.no_grad():
-            touch = self._step(self._poses(state.body_q), dt)
-            pushed = self._body[:, self.scene.body].flatten()
-            wp.to_torch(state.body_f).index_add_(0, pushed, touch.push.flatten(0, 1))
-        return touch
-
-    def _poses(self, body_q: Any) -> Poses:
-        """Poses of sites, shapes and bodies, from those of bodies: position, m, and quaternion, w
-        last.
-        """
-        of_body = wp.to_torch(body_q)
-        still = torch.tensor([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], device=of_body.device)
-
-        def rows_of(body: torch.Tensor) -> torch.Tensor:
-            return torch.where((body >= 0)[..., None], of_body[body], still)
-
-        rows, middle = rows_of(self._body_of), rows_of(self._body)
-        turn = arrays.rotation_of(rows[..., 3:])
-        own_turn = arrays.rotation_of(self._local[..., 3:])
-        place_m, turn = placed(rows[..., :3], turn, self._local[..., :3], own_turn)
-        lever_m = (arrays.rotation_of(middle[..., 3:]) * self._middle[self._body][..., None, :]).sum(-1)
-        n = self._n_sites
-        return Poses(
-            place_m[:, :n], turn[:, :n], place_m[:, n:], turn[:, n:], middle[..., :3] + lever_m
+        device = self._position_m.device
+        wp.launch(
+            _place,
+            self._position_m.shape,
+            [state.body_q, self._body_of, self._local],
+            [self._position_m, self._rotation],
+            device=device,
         )
+        wp.launch(
+            _place_middles,
+            self._body.shape,
+            [state.body_q, self._body, self._middle_m],
+            [self._middle_in_world_m],
+            device=device,
+        )
+        self._gels.pass_time(dt)
+        self._gels.launch(self._poses)
+        push = self._gels.push
+        wp.launch(_apply, push.shape, [self._pushed, push], [state.body_f], device=device)
+        return self.touch
+
+    def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
+        """Resets the gels.
+
+        Args:
+            worlds: indices of the worlds, or a mask; all worlds unless given.
+        """
+        self._gels.forget(worlds)
+
+
+@wp.kernel
+def _place(
+    body_q: wp.array[wp.transform],
+    body: wp.array2d[int],
+    local: wp.array2d[wp.transform],
+    position_m: wp.array2d[wp.vec3],
+    rotation: wp.array2d[wp.mat33],
+) -> None:
+    """Poses in the world of what has a pose in the frame of a body; -1 is the world."""
+    w, place = wp.tid()
+    pose = local[w, place]
+    if body[w, place] >= 0:
+        pose = body_q[body[w, place]] * pose
+    position_m[w, place] = wp.transform_get_translation(pose)
+    rotation[w, place] = wp.quat_to_matrix(wp.transform_get_rotation(pose))
+
+
+@wp.kernel
+def _place_middles(
+    body_q: wp.array[wp.transform],
+    body: wp.array2d[int],
+    middle_m: wp.array[wp.vec3],
+    position_m: wp.array2d[wp.vec3],
+) -> None:
+    """Centres of mass of bodies in the world."""
+    w, b = wp.tid()
+    if body[w, b] >= 0:
+        position_m[w, b] = wp.transform_point(body_q[body[w, b]], middle_m[body[w, b]])
+
+
+@wp.kernel
+def _apply(
+    body: wp.array2d[int],
+    push: wp.array2d[wp.spatial_vector],
+    body_f: wp.array[wp.spatial_vector],
+) -> None:
+    w, b = wp.tid()
+    if body[w, b] >= 0:
+        wp.atomic_add(body_f, body[w, b], push[w, b])
 
 
 def _in_worlds(model: newton.Model, field: str, labels: list[str]) -> _Ints:
@@ -171,7 +233,7 @@ def _shape(model: newton.Model, numbers: _Ints) -> arrays.Shapes:
     if kind in (newton.GeoType.MESH, newton.GeoType.CONVEX_MESH):
         mesh = model.shape_source[first]
         corners_mm = np.asarray(mesh.vertices, float) * 1e3 * half_m
-        return arrays.mesh(Shape.surface(corners_mm, np.asarray(mesh.indices).reshape(-1, 3)))
+        return from_samples(Shape.surface(corners_mm, np.asarray(mesh.indices).reshape(-1, 3)))
     shape = primitive(kind.name, half_m)
     if shape is None:
         raise ValueError(f"shape `{label}` is a {kind.name}, which sensors do not feel")
