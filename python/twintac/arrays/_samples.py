@@ -19,8 +19,9 @@ _MOST_SAMPLES = 4e6
 _REACH_MM = 2.0
 
 # A body counts as infinitely thick above this thickness, mm; step into a body, mm; components of
-# normals are rounded to multiples of one over `_NORMALS`.
-_THICKEST_MM, _STEP_MM, _NORMALS = 12.0, 0.25, 4.0
+# normals are rounded to multiples of one over `_NORMALS`; a face is across a body from another one if
+# the cosine of the angle between their outward normals is below `_ACROSS`.
+_THICKEST_MM, _STEP_MM, _NORMALS, _ACROSS = 12.0, 0.25, 4.0, -0.7
 
 
 class Samples(NamedTuple):
@@ -116,21 +117,31 @@ def thin_faces(samples: Samples) -> tuple[_Floats, _Floats]:
         found: _Floats = sampled_mm(np, samples, axes)[:, 0]
         return found
 
+    def outwards(points_mm: _Floats) -> tuple[_Floats, _Floats]:
+        """Outward normals, and where there are any."""
+        steps = _STEP_MM * np.eye(3)
+        slope = [at_mm(points_mm + step) - at_mm(points_mm - step) for step in steps]
+        length = np.linalg.norm(slope, axis=0)
+        return np.stack(slope, axis=-1) / np.where(length > 0.0, length, 1.0)[:, None], length > 0.0
+
     step_mm = 1.0 / samples.cells_per_mm
     n = samples.n_cells + 1
     own_mm = samples.distance_mm[int(samples.first) :][: int(np.prod(n))].reshape(n)
     is_near = np.abs(own_mm) < 0.5 * step_mm.max()
     point_mm = samples.low_mm + step_mm * np.argwhere(is_near)
-    steps = _STEP_MM * np.eye(3)
-    slope = np.stack([at_mm(point_mm + step) - at_mm(point_mm - step) for step in steps], axis=-1)
-    length = np.linalg.norm(slope, axis=-1)
-    point_mm, normal = point_mm[length > 0.0], (slope / length[:, None])[length > 0.0]
+    normal, has_way = outwards(point_mm)
+    point_mm, normal = point_mm[has_way], normal[has_way]
     surface_mm = point_mm - at_mm(point_mm)[:, None] * normal
     half_mm = np.full(len(normal), np.inf)
+    is_inside = np.full(len(normal), True)
     for number in range(1, int(_THICKEST_MM / _STEP_MM)):
-        left = np.flatnonzero(np.isinf(half_mm))
-        is_out = at_mm(surface_mm[left] - _STEP_MM * number * normal[left]) > 0.0
-        half_mm[left[is_out]] = 0.5 * _STEP_MM * (number - 1)
+        left = np.flatnonzero(is_inside)
+        end_mm = surface_mm[left] - _STEP_MM * number * normal[left]
+        is_out = at_mm(end_mm) > 0.0
+        out, end_mm = left[is_out], end_mm[is_out]
+        is_inside[out] = False
+        is_across = (outwards(end_mm)[0] * normal[out]).sum(axis=-1) <= _ACROSS
+        half_mm[out[is_across]] = 0.5 * _STEP_MM * (number - 1)
     is_thin = np.isfinite(half_mm)
     keys, which = np.unique(np.rint(_NORMALS * normal[is_thin]), axis=0, return_inverse=True)
     least_mm = np.full(len(keys), np.inf)

@@ -541,6 +541,9 @@ fn guessed(log: &str, parts: &[&str]) {
     for part in parts {
         assert!(guess.contains(part), "no `{part}` in\n{guess}");
     }
+    // A decimal comma is found only in a log that has one.
+    let has_comma = parts.contains(&"decimal = \",\"");
+    assert_eq!(guess.contains("decimal"), has_comma, "{guess}");
     let import = Import::parse("guessed.toml", &guess).unwrap();
     // A file without column names needs names first.
     if guess.contains("columns = [\"") {
@@ -584,6 +587,16 @@ fn a_guessed_description_reads_the_log_that_it_was_guessed_from() {
             "unit = \"hPa\"",
         ],
     );
+    // Tabs and semicolons, with decimal points.
+    for (delimiter, escaped) in [('\t', "\\t"), (';', ";")] {
+        let split = |line: String| line.replace(',', &delimiter.to_string());
+        guessed(
+            &pressed(&split("t,z,p0,p1".into()), &|[t, z, _, a, b]| {
+                split(format!("{t:.3},{z:.3},{a:.1},{b:.1}"))
+            }),
+            &[&format!("delimiter = \"{escaped}\"")],
+        );
+    }
     // Lines before the header, and a clock.
     guessed(
         &pressed(

@@ -61,11 +61,17 @@ impl Layout {
             });
         // Of equal layouts the first: a comma is more likely a separator than a decimal comma.
         let best = layouts.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
-        let (_, delimiter, has_decimal_comma, n_cells) = best;
-        let first_row = lines.iter().position(|line| {
+        let (_, delimiter, may_have_decimal_comma, n_cells) = best;
+        let has_numbers = |line: &[u8]| {
             let row = split(line, delimiter);
-            line.first() != comment.as_ref() && row.len() == n_cells && is_numeric(&row, has_decimal_comma)
-        })?;
+            line.first() != comment.as_ref()
+                && row.len() == n_cells
+                && is_numeric(&row, may_have_decimal_comma)
+        };
+        let first_row = lines.iter().position(|line| has_numbers(line))?;
+        // Without any comma among the numbers, they have decimal points.
+        let has_comma = |line: &[u8]| has_numbers(line) && line.contains(&b',');
+        let has_decimal_comma = may_have_decimal_comma && lines.iter().any(|line| has_comma(line));
         let header_line = (0..first_row)
             .rev()
             .find(|&line| split(lines[line], delimiter).len() == n_cells);
