@@ -48,6 +48,7 @@ DISTURBANCE, CORRELATION = 0.05, 0.9
 # Sensors of the training, and the part of the episodes with a dead taxel.
 SENSORS = {
     "perfect": (SensorVariation(), 0.0),
+    "dropout": (SensorVariation(), 0.3),
     "usual": (SensorVariation.usual(), 0.3),
     "varied": (SensorVariation(**(SensorVariation.usual().fields() | {"gain_deviation": 0.08, "modulus_deviation": 0.6})), 0.3),
 }
