@@ -185,6 +185,7 @@ def test_blocks_rest_on_palms_in_mjlab() -> None:
 def test_steps_of_mjlab_that_were_captured_without_the_sensors_are_refused() -> None:
     simulation, scene_there = in_mjlab()
     simulation.model.struct.callback.control = None
+    assert scene_there["touch"].data.pressure_kpa.shape == (N_WORLDS, 1, 8)
     for _ in range(2):
         simulation.step()
         scene_there.update(0.001)

@@ -8,8 +8,8 @@ from .. import arrays
 from ..arrays._namespace import Array, namespace
 from ._scene import Scene
 
-# A distance at which a body touches nothing, mm.
-_AWAY_MM = 1000.0
+# Where a body that cannot touch is put, along each axis, mm.
+AWAY_MM = 1000.0
 
 
 class Poses(NamedTuple):
@@ -121,7 +121,7 @@ def _relative(xp: Any, scene: Scene, poses: Poses) -> tuple[Array, Array]:
         xp.take(poses.geom_m, scene.geom, axis=-2)[..., None, :, :],
         xp.take(poses.geom_rotation, scene.geom, axis=-3)[..., None, :, :, :],
     )
-    return xp.where(scene.can_touch[..., None], position_mm, _AWAY_MM), rotation
+    return xp.where(scene.can_touch[..., None], position_mm, AWAY_MM), rotation
 
 
 def _push(xp: Any, scene: Scene, poses: Poses, wrench: Array) -> Array:

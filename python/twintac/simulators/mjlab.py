@@ -60,7 +60,7 @@ class TouchSensorCfg(SensorCfg):  # type: ignore[misc, unused-ignore]
 
 class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
     """The sensors that `TouchSensorCfg` makes. `data` has the output of the last substep or
-    `forward`. The gels of environments that are reset start anew.
+    `forward`: tensors that each substep changes. The gels of environments that are reset start anew.
 
     The sensors overwrite `xfrc_applied` of the bodies that the gels push. Write your own forces on
     these bodies into `sensors.applied`, instead of with `Entity.write_external_wrench_to_sim`.
@@ -72,6 +72,7 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         self.sensors: Sensors
         self._data: Any
         self._step_s: float
+        self._start_s: tuple[torch.Tensor, torch.Tensor] | None = None
         self._is_called = False
 
     def edit_spec(self, scene_spec: mujoco.MjSpec, entities: dict[str, Any]) -> None:
@@ -127,14 +128,17 @@ class TouchSensor(MjlabSensor[Touch]):  # type: ignore[misc, unused-ignore]
         """Checks, until the first steps have been made, that MuJoCo Warp calls the sensors in each
         of them: a captured step calls only what was there when it was captured.
         """
-        behind_s = float((wp.to_torch(self._data.time) - self.sensors.time_s).max())
-        if behind_s > 1.5 * self._step_s:
+        now_s = wp.to_torch(self._data.time), self.sensors.time_s
+        if self._start_s is None:
+            self._start_s = now_s[0].clone(), now_s[1].clone()
+        passed_s, followed_s = (now - start for now, start in zip(now_s, self._start_s))
+        self._is_called = bool((followed_s > 0.0).any())
+        if not self._is_called and bool((passed_s > 1.5 * self._step_s).any()):
             raise RuntimeError(
-                "the simulation makes steps without the touch sensors, because it captured them "
-                "before the sensors were there: call `env.sim.create_graph()` once when the "
-                "environment is made"
+                "the simulation makes steps without the touch sensors: if it captured them before "
+                "the sensors were there, call `env.sim.create_graph()` once when the environment "
+                "is made; actuation must not be disabled"
             )
-        self._is_called = bool(self.sensors.time_s.max() > self._step_s)
 
     def _sites(self) -> list[str]:
         return [f"{self.cfg.name}/{number}" for number in range(len(self.cfg.bodies))]

@@ -20,7 +20,7 @@ import warp as wp
 from .. import FastGel
 from ._moment import Poses, Touch
 from ._mujoco import scene_of
-from ._warp import Gels
+from ._warp import WarpGels
 
 __all__ = ["Sensors", "Touch"]
 
@@ -62,7 +62,7 @@ class Sensors:
     ) -> None:
         kept: dict[str, Any] = {"friction": friction, "retardation_s": retardation_s}
         self.scene = scene_of(model, sites, gel=gel, geoms=geoms, follows_thin=True, **kept)
-        self._gels = Gels(self.scene, gel, data.nworld, data.time.device)
+        self._gels = WarpGels(self.scene, gel, data.nworld, data.time.device)
         self._body = wp.array(self.scene.body, dtype=int, device=data.time.device)
         self._applied = wp.zeros_like(data.xfrc_applied)
         self.applied: torch.Tensor = wp.to_torch(self._applied)

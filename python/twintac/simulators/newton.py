@@ -24,7 +24,7 @@ from ..arrays._shapes import from_samples
 from ._moment import Poses, Touch
 from ._scene import Places, scene
 from ._shapes import primitive
-from ._warp import Gels
+from ._warp import WarpGels
 
 __all__ = ["Sensors", "Touch"]
 
@@ -107,7 +107,7 @@ class Sensors:
             self._rotation[:, n_sites:],
             self._middle_in_world_m,
         )
-        self._gels = Gels(self.scene, gel, n_worlds, device)
+        self._gels = WarpGels(self.scene, gel, n_worlds, device)
         self.touch: Touch = self._gels.touch()
         """The last output of the sensors: tensors that each push changes."""
 
@@ -117,10 +117,11 @@ class Sensors:
 
         Args:
             state: the state with the poses.
-            dt: time since the last call, s.
+            dt: time since the last call, s; 0 replaces the last time step. A captured call keeps
+                the time that it was captured with.
 
         Returns:
-            The output of the sensors, which is `touch`.
+            The output of the sensors, which is `touch`: tensors that each push changes.
         """
         device = self._position_m.device
         wp.launch(

@@ -2,6 +2,6 @@
 the formulas of `twintac.arrays`, without gradients.
 """
 
-from .gels import Gels
+from .gels import WarpGels
 
-__all__ = ["Gels"]
+__all__ = ["WarpGels"]

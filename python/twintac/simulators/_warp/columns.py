@@ -246,7 +246,8 @@ def _spread(
             least_mm = levels.least_mm[w, s, t, c][level]
             open_mm = wp.max(open_mm, -wp.max(aside_mm, -least_mm))
         found_mm[level] = plain_mm + top * wp.min(open_mm - plain_mm, 0.0)
-    wp.atomic_min(gap_mm, w, s, g, found_mm[0])
+    if found_mm[0] < REACH_MM:  # else the body may be anywhere beyond
+        wp.atomic_min(gap_mm, w, s, g, found_mm[0])
     share[w, s, g, p] = share_of(found_mm, points.deepest_mm[p])
 
 

@@ -110,13 +110,7 @@ def tell_time(
 ) -> None:
     """Compares the simulator's time, `[n_worlds]`, with that of the last call."""
     w = wp.tid()
-    passing_s = now_s[w] - time_s[w]
-    turn[w] = _STAYS
-    if passing_s > 0.0:
-        turn[w] = _GOES_ON
-        passed_s[w] = passing_s
-    if passing_s < 0.0:
-        turn[w] = _GOES_BACK
+    _pass(now_s[w] - time_s[w], w, passed_s, turn)
     time_s[w] = now_s[w]
 
 
@@ -124,8 +118,17 @@ def tell_time(
 def pass_time(step_s: float, passed_s: wp.array[float], turn: wp.array[int]) -> None:
     """Lets a time step pass in all worlds."""
     w = wp.tid()
-    turn[w] = _GOES_ON
-    passed_s[w] = step_s
+    _pass(step_s, w, passed_s, turn)
+
+
+@wp.func
+def _pass(step_s: float, w: int, passed_s: wp.array[float], turn: wp.array[int]) -> None:
+    turn[w] = _STAYS
+    if step_s > 0.0:
+        turn[w] = _GOES_ON
+        passed_s[w] = step_s
+    if step_s < 0.0:
+        turn[w] = _GOES_BACK
 
 
 @wp.kernel
@@ -182,10 +185,12 @@ def hold(
     rotation: wp.array3d[wp.mat33],
     together: wp.array4d[float],
     apart: wp.array4d[float],
+    broken: wp.array3d[float],
     before: Held,
     now: Held,
     wrench: wp.array3d[wp.spatial_vector],
     slip_mm_per_s: wp.array3d[wp.vec2],
+    gap_mm: wp.array3d[float],
 ) -> None:
     """Friction and damping of each body: the new state, the wrench with both, and the slip."""
     w, s, g = wp.tid()
@@ -235,9 +240,12 @@ def hold(
     if before.is_known[w, s, g]:
         rate = (elastic - before.elastic[w, s, g]) / passed_s[w]
         lossy = elastic + layer.retardation_s * rate
-    # A gel does not adhere.
-    wrench[w, s, g] = wp.where(lossy[2] > 0.0, wp.spatial_vector(), lossy)
-    slip_mm_per_s[w, s, g] = slip_mm / passed_s[w]
+    if lossy[2] > 0.0:  # a gel does not adhere
+        lossy = wp.spatial_vector()
+    no = broken[w, s, g]
+    wrench[w, s, g] = lossy + wp.spatial_vector(no, no, no, no, no, no)
+    slip_mm_per_s[w, s, g] = slip_mm / passed_s[w] + wp.vec2(no, no)
+    gap_mm[w, s, g] += no
     now.is_held[w, s, g] = holds
     now.position_mm[w, s, g] = position_mm[w, s, g]
     now.rotation[w, s, g] = rotation[w, s, g]
@@ -288,6 +296,7 @@ def pull(
     share: wp.array4d[wp.vec3],
     now: Held,
     pressed_kpa: wp.array4d[float],
+    broken: wp.array3d[float],
     pressure_kpa: wp.array3d[float],
 ) -> None:
     """Adds the pressures at the ports due to friction along the surface to those of the presses."""
@@ -295,6 +304,7 @@ def pull(
     pressure = pressed_kpa[w, s, 0, t]
     n_entries = layer.kernel.shape[0]
     for g in range(share.shape[2]):
+        pressure += broken[w, s, g]
         deepest, force_n = foot.deepest[w, s, g], now.force_n[w, s, g]
         if deepest > 0.0 and wp.length_sq(force_n) > 0.0:
             height_mm = foot.thickness_mm[w, s, g]

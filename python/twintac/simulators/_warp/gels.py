@@ -18,7 +18,7 @@ from .network import Network
 wp.set_module_options({"enable_backward": False})
 
 
-class Gels:
+class WarpGels:
     """The gels of all worlds on a device. All memory is reserved here, so that the launches can be
     captured in a graph.
 
@@ -71,12 +71,14 @@ class Gels:
         self._apart = self._wrench if is_one else Network(scene.gel.wrench, self._share.shape, device)
         self._foot = friction.foot(pairs, device)
         self._before, self._now = friction.held(pairs, device), friction.held(pairs, device)
-        self._turn, self._passed_s = zeros(int, n_worlds), zeros(float, n_worlds)
+        self._turn = zeros(int, n_worlds)
+        self._passed_s = wp.ones(n_worlds, dtype=float, device=device)
         self.time_s = zeros(float, n_worlds)
         """The simulator's time of the last `launch`, if it is told, s, `[n_worlds]`."""
         self._wrench_of_bodies = zeros(wp.spatial_vector, *pairs)
         self._sum = zeros(wp.spatial_vector, n_worlds, n_sensors)
         self._gap_mm, self._slip_mm_per_s = zeros(float, *pairs), zeros(wp.vec2, *pairs)
+        self._broken = zeros(float, *pairs)
         n_taxels = scene.gel.ports_mm.shape[0]
         self._pressure_kpa = zeros(float, n_worlds, n_sensors, n_taxels)
         self.push = zeros(wp.spatial_vector, n_worlds, len(scene.body))
@@ -94,7 +96,7 @@ class Gels:
         self._launch(friction.tell_time, self._pairs[:1], [time_s], outputs)
 
     def pass_time(self, step_s: float) -> None:
-        """Time between the last `launch` and the next, s."""
+        """Time between the last `launch` and the next, s; 0 replaces the last time step."""
         outputs = [self._passed_s, self._turn]
         self._launch(friction.pass_time, self._pairs[:1], [step_s], outputs)
 
@@ -114,8 +116,8 @@ class Gels:
         self._launch(
             near.place,
             pairs,
-            [self._site, self._geom, *poses[:4]],
-            [self._position_mm, self._rotation, self._gap_mm],
+            [self._site, self._geom, *poses[:4], self._can_touch],
+            [self._position_mm, self._rotation, self._gap_mm, self._broken],
         )
         placed = [self._bodies, self._can_touch, self._position_mm, self._rotation]
         self._launch(
@@ -146,13 +148,27 @@ class Gels:
                 self._rotation,
                 self._wrench.output,
                 self._apart.output,
+                self._broken,
             ],
-            [self._before, self._now, self._wrench_of_bodies, self._slip_mm_per_s],
+            [
+                self._before,
+                self._now,
+                self._wrench_of_bodies,
+                self._slip_mm_per_s,
+                self._gap_mm,
+            ],
         )
         self._launch(
             friction.pull,
             self._pressure_kpa.shape,
-            [self._layer, self._foot, self._share, self._now, self._pressure.output],
+            [
+                self._layer,
+                self._foot,
+                self._share,
+                self._now,
+                self._pressure.output,
+                self._broken,
+            ],
             [self._pressure_kpa],
         )
         self._launch(_add_up, pairs[:2], [self._wrench_of_bodies], [self._sum])

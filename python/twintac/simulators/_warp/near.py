@@ -9,13 +9,11 @@ import warp as wp
 
 from ... import arrays
 from ...arrays._contact import FAR_MM, REACH_MM
+from .._moment import AWAY_MM
 from .distance import Bodies, distance_mm, is_behind, is_plane
 from .thin import Faces, is_thin
 
 wp.set_module_options({"enable_backward": False})
-
-# The gap of a body that cannot touch, mm.
-_AWAY_MM = 1000.0
 
 
 @wp.struct
@@ -91,18 +89,25 @@ def place(
     site_rotation: wp.array2d[wp.mat33],
     geom_m: wp.array2d[wp.vec3],
     geom_rotation: wp.array2d[wp.mat33],
+    can_touch: wp.array2d[bool],
     position_mm: wp.array3d[wp.vec3],
     rotation: wp.array3d[wp.mat33],
     gap_mm: wp.array3d[float],
+    broken: wp.array3d[float],
 ) -> None:
-    """Poses of the geoms in the frames of the gels; the gaps become far.
-    `[n_worlds, n_sensors, n_geoms]`.
+    """Poses of the geoms in the frames of the gels, and NaN instead of 0 where a pose is not finite:
+    minima and maxima forget it. `[n_worlds, n_sensors, n_geoms]`.
     """
     w, s, g = wp.tid()
     turn = wp.transpose(site_rotation[w, site[s]])
     position_mm[w, s, g] = turn * (1000.0 * (geom_m[w, geom[g]] - site_m[w, site[s]]))
     rotation[w, s, g] = turn * geom_rotation[w, geom[g]]
-    gap_mm[w, s, g] = _AWAY_MM
+    gap_mm[w, s, g] = AWAY_MM
+    broken[w, s, g] = 0.0
+    if can_touch[s, g]:
+        gap_mm[w, s, g] = float(wp.inf)
+        total = position_mm[w, s, g] + rotation[w, s, g] * wp.vec3(1.0, 1.0, 1.0)
+        broken[w, s, g] = 0.0 * (total[0] + total[1] + total[2])
 
 
 @wp.kernel
@@ -117,8 +122,8 @@ def approach(
     gap_mm: wp.array3d[float],
 ) -> None:
     """The proximity of each body to each point, for the three levels,
-    `[n_worlds, n_sensors, n_geoms, n_points]`; and the gap of each body. Thin bodies that are
-    followed upward (`columns`) are left out.
+    `[n_worlds, n_sensors, n_geoms, n_points]`; and the gap of each body. The
+    proximity of thin bodies that are followed upward (`columns`) is left out.
     """
     w, s, g, p = wp.tid()
     share[w, s, g, p] = wp.vec3(0.0, 0.0, 0.0)
@@ -128,9 +133,10 @@ def approach(
     turn, origin_mm = wp.transpose(own), position_mm[w, s, g]
     up = wp.vec3(own[2, 0], own[2, 1], own[2, 2])
     box, away_mm = box_of(bodies, g, own), points.at_mm[p] - origin_mm
-    lowest_mm = origin_mm[2] + box.middle_mm[2] - box.half_mm[2]
+    lowest_mm = lowest_of(bodies, g, origin_mm, own)
     depth_mm = points.highest_mm[p] - lowest_mm
     if is_thin(faces, g, depth_mm, up):
+        wp.atomic_min(gap_mm, w, s, g, distance_mm(bodies, g, turn * away_mm, up, 0.0))
         return
     is_open = wp.where(depth_mm > box.thin_mm, 1.0, 0.0)
     is_flat = is_plane(bodies, g)

@@ -32,8 +32,12 @@ def faces(shapes: arrays.Shapes, device: Any) -> Faces:
     n_geoms = len(shapes.grown_mm)
     normals, halves_mm, counts = [np.zeros((0, 3))], [np.zeros(0)], np.zeros(n_geoms, int)
     if shapes.samples is not None and shapes.is_sampled is not None:
+        known: dict[int, Any] = {}  # equal shapes share their samples
         for geom in np.flatnonzero(shapes.is_sampled):
-            normal, half_mm = thin_faces(shapes.samples.of(int(geom)))
+            samples = shapes.samples.of(int(geom))
+            if int(samples.first) not in known:
+                known[int(samples.first)] = thin_faces(samples)
+            normal, half_mm = known[int(samples.first)]
             normals.append(normal)
             halves_mm.append(half_mm)
             counts[geom] = len(half_mm)

@@ -15,16 +15,16 @@ const STEP_MM: f32 = 0.25;
 /// Resolution of normals: components are rounded to multiples of one over this.
 const NORMALS: f32 = 4.0;
 
-/// A face is across a body from another one if the cosine of the angle between their outward normals
-/// is below this. A path that leaves through a neighbouring face says how sharp an edge is, not how
-/// thin the body.
+/// A face is across a body from another one if the cosine of the angle between their outward
+/// normals is below this. A path that leaves through a neighbouring face says how sharp an edge is,
+/// not how thin the body.
 const ACROSS: f32 = -0.7;
 
 /// Smallest upward component of the normal of a top.
 const LEAST_TOP: f32 = 0.5 - 1.0 / NORMALS;
 
-/// Half of the thickness of a body under each face that has another one across, mm, by the normal of
-/// the face.
+/// Half of the thickness of a body under each face that has another one across, mm, by the normal
+/// of the face.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Thickness {
     halves_mm: Vec<(Vec3A, f32)>,
