@@ -1,7 +1,7 @@
 """Trains recurrent networks that estimate the force on a sensor, holds forces with them, and
 compares them on emulated benches.
 
-    python estimate_force.py train --sensors varied [--seed 1] [--out runs/estimate]
+    python estimate_force.py train [--sensors dropout] [--seed 1] [--out runs/estimate]
     python estimate_force.py test --recordings runs/*/recordings/presses.parquet [--runs runs/estimate]
 
 The network gets the observations of HoldForce and the list of dead taxels, and estimates the force
@@ -45,7 +45,7 @@ BENCH_SEED = 1  # of springs, forces, noise and dead taxels of a test
 # Disturbances of the actions in training, and their correlation from step to step.
 DISTURBANCE, CORRELATION = 0.05, 0.9
 
-# Sensors of the training, and the part of the episodes with a dead taxel.
+# Sensors of the training, and the part of the episodes with a dead taxel (taxel dropout).
 SENSORS = {
     "perfect": (SensorVariation(), 0.0),
     "dropout": (SensorVariation(), 0.3),
@@ -237,13 +237,14 @@ def draw(path: Path, benches: list[str], found: dict[str, list[Double]]) -> None
     from matplotlib.figure import Figure
 
     kinds = list(dict.fromkeys(name.rsplit("-", 1)[0] for name in found))
+    labels = {"script": "scripted baseline", "dropout": "trained with taxel dropout"}
     figure = Figure(figsize=(8, 3.6), layout="constrained")
     for panel, sensor in enumerate(SENSOR_STATES):
         axes = figure.add_subplot(1, 2, panel + 1, title=f"sensor: {sensor}", ylim=(0.0, 0.5), ylabel="mean error of the force, N")
         for number, kind in enumerate(kinds):
             own = [values[panel] for name, values in found.items() if name.rsplit("-", 1)[0] == kind]
             at = np.arange(len(benches)) + 0.18 * (number - 0.5 * (len(kinds) - 1))
-            axes.plot(np.tile(at, len(own)), np.concatenate(own), "o", markersize=4, label="scripted baseline" if kind == "script" else f"trained on {kind} sensors")
+            axes.plot(np.tile(at, len(own)), np.concatenate(own), "o", markersize=4, label=labels.get(kind, f"trained on {kind} sensors"))
         axes.set_xticks(np.arange(len(benches)), benches, rotation=30, ha="right", fontsize=8)
         axes.grid(alpha=0.3, axis="y")
     figure.axes[0].legend(fontsize=8)
@@ -256,7 +257,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("train", help="train a network")
-    one.add_argument("--sensors", choices=SENSORS, default="varied", help="sensors of the training (default: varied)")
+    one.add_argument("--sensors", choices=SENSORS, default="dropout", help="sensors of the training (default: dropout, perfect ones with taxel dropout)")
     one.add_argument("--seed", type=int, default=1, help="of all that is random (default: 1)")
     one.add_argument("--out", type=Path, default=Path("runs/estimate"), help="folder of the networks (default: runs/estimate)")
     other = commands.add_parser("test", help="compare all trained networks and the scripted baseline")

@@ -9,9 +9,10 @@ use std::process::{Command, Stdio};
 fn ended_by(signal: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let (log, program) = (folder.path().join("terminal"), env!("CARGO_BIN_EXE_twintac"));
+    // The log begins with this line, which must not look like the output that is waited for.
     let line = format!(
-        "'{program}' stream --lab --out '{}' & pid=$!; i=0; \
-         while [ $i -lt 1200 ] && ! grep -q '?1049h' '{}'; do sleep 0.05; i=$((i+1)); done; \
+        "'{program}' stream --lab --out '{}' & pid=$!; i=0; entered=$(printf '\\033[?1049h'); \
+         while [ $i -lt 1200 ] && ! grep -qF \"$entered\" '{}'; do sleep 0.05; i=$((i+1)); done; \
          kill -s {signal} $pid; wait $pid; echo \"code $?\"",
         folder.path().display(),
         log.display()
