@@ -11,7 +11,6 @@ kernels of Warp alone, so that `push` and the solver's step can be captured in a
 
 import os
 from fnmatch import fnmatchcase
-from typing import Any
 
 import newton
 import numpy as np
