@@ -15,12 +15,13 @@ INK, LINE = (28, 36, 48), (110, 118, 130)
 
 
 def draw_labels(picture: Image.Image, labels: list[Label], points: list[tuple[float, float]]) -> Image.Image:
-    """The picture with a margin on each side that has labels. Labels have the order of the heights
-    of their points.
+    """The picture with a margin on each side that has labels. Labels at the sides have the order of
+    the heights of their points.
     """
     left = MARGIN if any(label.side == "left" for label in labels) else 0
     right = MARGIN if any(label.side == "right" for label in labels) else 0
-    wide = Image.new("RGB", (picture.width + left + right, picture.height), "white")
+    below = 2 * LINE_HEIGHT if any(label.side == "below" for label in labels) else 0
+    wide = Image.new("RGB", (picture.width + left + right, picture.height + below), "white")
     wide.paste(picture, (left, 0))
     drawing = ImageDraw.Draw(wide)
     font = ImageFont.load_default(TEXT_SIZE)

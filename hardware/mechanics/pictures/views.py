@@ -216,7 +216,7 @@ def prints(made: Made, path: Path) -> None:
             body = Body(body.shape.rotate((180.0, 0.0, 0.0)), body.kind)
         low_x, low_y, low_z = body.shape.bounding_box()[:3]
         if number % 3 == 0:
-            x, y, deepest = 0.0, y - deepest - 16.0, 0.0
+            x, y, deepest = 0.0, y - deepest - 34.0, 0.0
         width, depth = mesh.extents[:2]
         show(scene, [body.moved((x - low_x, y - depth - low_y, -low_z))])
         scene.labels.append(Label(name, (x + width / 2, y - depth, 0.0), "below"))

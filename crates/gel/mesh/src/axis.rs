@@ -10,6 +10,7 @@ pub(crate) struct Core<'a> {
     pub(crate) edge_mm: f64,
     pub(crate) growth: f64,
     pub(crate) stretches: &'a [Stretch],
+    pub(crate) lines_mm: &'a [f64],
 }
 
 /// The lines of one axis, in two versions: ideal for the contact, and snapped to the faces of the
@@ -75,7 +76,7 @@ impl Axis {
 }
 
 impl Core<'_> {
-    /// Lines over the focus, evenly spaced except in its stretches. Lines closer than half an edge
+    /// Lines over the focus, evenly spaced except at its stretches and lines. Lines closer than half an edge
     /// to an end of the axis are left out.
     fn lines_mm(&self, [low_mm, high_mm]: [f64; 2]) -> Result<Vec<f64>, MeshError> {
         let [below_mm, above_mm] = [self.side_mm(-1.0)?, self.side_mm(1.0)?];
@@ -95,7 +96,7 @@ impl Core<'_> {
     /// Distances of the lines on one side from the centre; the first is 0.
     fn side_mm(&self, sign: f64) -> Result<Vec<f64>, MeshError> {
         let n_edges = (self.radius_mm / self.edge_mm - 1e-9).ceil().clamp(1.0, 2000.0);
-        if self.stretches.is_empty() {
+        if self.stretches.is_empty() && self.lines_mm.is_empty() {
             return Ok((0..=n_edges as u32)
                 .map(|line| f64::from(line) * self.edge_mm)
                 .collect());
@@ -105,8 +106,31 @@ impl Core<'_> {
             size.refine(sign * stretch.offset_mm, stretch.reach_mm, stretch.edge_mm);
         }
         let mut lines_mm = vec![0.0];
-        size.divide(0.0, self.radius_mm, &mut lines_mm)?;
+        let mut from_mm = 0.0;
+        for to_mm in self.asked_mm(sign, &size) {
+            size.divide(from_mm, to_mm, &mut lines_mm)?;
+            from_mm = to_mm;
+        }
         Ok(lines_mm)
+    }
+
+    /// Distances from the centre, in order, at which there must be a line on one side. The last is
+    /// the radius, or half an edge if the radius is smaller.
+    fn asked_mm(&self, sign: f64, size: &SizeField) -> Vec<f64> {
+        let mut sorted_mm: Vec<f64> = self.lines_mm.iter().map(|line_mm| sign * line_mm).collect();
+        sorted_mm.sort_by(f64::total_cmp);
+        let radius_mm = self.radius_mm.max(0.5 * size.edge_mm(self.radius_mm));
+        let mut asked_mm = Vec::new();
+        let mut before_mm = 0.0;
+        for line_mm in sorted_mm {
+            let apart_mm = 0.5 * size.edge_mm(line_mm);
+            if line_mm > before_mm + apart_mm && line_mm < radius_mm - apart_mm {
+                asked_mm.push(line_mm);
+                before_mm = line_mm;
+            }
+        }
+        asked_mm.push(radius_mm);
+        asked_mm
     }
 }
 

@@ -66,6 +66,7 @@ impl Lattice {
                 edge_mm: focus.edge_mm,
                 growth: settings.growth,
                 stretches: &focus.stretches[axis],
+                lines_mm: &focus.lines_mm[axis],
             });
             Axis::new([low_mm[axis], high_mm[axis]], focus, &planes, &size, margin_mm)
         };

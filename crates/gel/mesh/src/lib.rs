@@ -33,7 +33,13 @@
 //!     min_mm: DVec3::new(x_mm - 1.0, -1.25, 0.0),
 //!     max_mm: DVec3::new(x_mm + 1.0, 1.25, 1.1),
 //! });
-//! let tip = Focus { center_mm: DVec3::new(3.0, 0.5, 6.0), radius_mm: 2.0, edge_mm: 0.5, stretches: Default::default() };
+//! let tip = Focus {
+//!     center_mm: DVec3::new(3.0, 0.5, 6.0),
+//!     radius_mm: 2.0,
+//!     edge_mm: 0.5,
+//!     stretches: Default::default(),
+//!     lines_mm: Default::default(),
+//! };
 //! let settings = MeshSettings { edge_mm: 1.5, focuses: vec![tip], ..MeshSettings::default() };
 //!
 //! let mesh = generate(&strip, &Surfaces::new(), &chips, &settings)?;

@@ -39,6 +39,11 @@ pub struct Focus {
     /// a punch.
     #[serde(default)]
     pub stretches: [Vec<Stretch>; 2],
+    /// Where there must be a line of the mesh, along x and along y, relative to the centre, mm; for
+    /// example where the flat underside of a punch ends and its rounded rim begins. A line that is
+    /// closer than half an edge to the centre, to the radius or to the line before it is left out.
+    #[serde(default)]
+    pub lines_mm: [Vec<f64>; 2],
 }
 
 /// A stretch of short edges along one axis.
@@ -115,6 +120,9 @@ impl MeshSettings {
                 within(&name("stretches.edge_mm"), stretch.edge_mm, 1e-4, 1e4)?;
                 within(&name("stretches.reach_mm"), stretch.reach_mm, 0.0, 1e4)?;
                 within(&name("stretches.offset_mm"), stretch.offset_mm, -1e4, 1e4)?;
+            }
+            for &line_mm in focus.lines_mm.iter().flatten() {
+                within(&name("lines_mm"), line_mm, -1e4, 1e4)?;
             }
             if focus.center_mm.is_nan() {
                 return within(&name("center_mm"), f64::NAN, 0.0, 1e4);

@@ -48,7 +48,8 @@ impl SizeField {
         }
     }
 
-    fn edge_mm(&self, at_mm: f64) -> f64 {
+    /// Longest edge at a position.
+    pub(crate) fn edge_mm(&self, at_mm: f64) -> f64 {
         self.pits.iter().fold(self.edge_mm, |edge, pit| {
             edge.min(pit.edge_mm + self.slope * ((at_mm - pit.at_mm).abs() - pit.reach_mm).max(0.0))
         })

@@ -82,6 +82,7 @@ fn focused(edge_mm: f64, center_mm: DVec3, radius_mm: f64, focus_edge_mm: f64) -
         radius_mm,
         edge_mm: focus_edge_mm,
         stretches: Default::default(),
+        lines_mm: Default::default(),
     };
     MeshSettings {
         edge_mm,
@@ -228,6 +229,26 @@ fn moving_the_press_keeps_the_contact_pattern() {
             "{center}"
         );
     }
+}
+
+#[test]
+fn lines_are_where_they_are_asked_unless_they_are_too_close() {
+    let mut settings = focused(1.5, DVec3::new(1.0, -1.0, 6.0), 4.0, 0.7);
+    // Too close to the centre, to the first line and to the radius are 0.3, 1.3 and 3.9.
+    settings.focuses[0].lines_mm = [vec![0.3, 1.3, -2.3, 1.1, 3.9], vec![-1.9]];
+    let mesh = mesh_of(&block([24.0, 20.0, 6.0], 0.0), &[], &settings);
+    let has_line =
+        |axis: usize, at_mm: f64| mesh.nodes_mm.iter().any(|node| (node[axis] - at_mm).abs() < 1e-9);
+    for offset_mm in [0.0, 1.1, -2.3, 4.0, -4.0] {
+        assert!(has_line(0, 1.0 + offset_mm), "{offset_mm}");
+    }
+    assert!(
+        ![0.3, 1.3, 3.9]
+            .iter()
+            .any(|offset_mm| has_line(0, 1.0 + offset_mm))
+    );
+    assert!(has_line(1, -1.0 - 1.9) && !has_line(1, -1.0 + 1.9));
+    assert_sound(&mesh);
 }
 
 #[test]
@@ -435,15 +456,17 @@ fn any_chips() -> impl Strategy<Value = Vec<Cuboid>> {
 }
 
 fn any_settings() -> impl Strategy<Value = MeshSettings> {
-    let focus =
-        (-8.0..8.0, -8.0..8.0, 1.0..9.0, 0.0..3.0, 0.4..1.0).prop_map(|(x, y, z, radius_mm, edge_mm)| {
-            Focus {
-                center_mm: DVec3::new(x, y, z),
-                radius_mm,
-                edge_mm,
-                stretches: Default::default(),
-            }
-        });
+    let lines_mm = || prop::collection::vec(-3.5..3.5, 0..3);
+    let size = (0.0..3.0, 0.4..1.0);
+    let focus = (-8.0..8.0, -8.0..8.0, 1.0..9.0, size, lines_mm(), lines_mm()).prop_map(
+        |(x, y, z, (radius_mm, edge_mm), x_lines_mm, y_lines_mm)| Focus {
+            center_mm: DVec3::new(x, y, z),
+            radius_mm,
+            edge_mm,
+            stretches: Default::default(),
+            lines_mm: [x_lines_mm, y_lines_mm],
+        },
+    );
     (0.8..2.0, 0.4..1.0, 1.1..1.5, prop::collection::vec(focus, 0..3)).prop_map(
         |(edge_mm, top_edge_ratio, growth, focuses)| MeshSettings {
             edge_mm,

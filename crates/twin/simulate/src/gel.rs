@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::{DQuat, DVec2, DVec3};
 use serde::{Serialize, Serializer};
 use twintac_depth_table::{DepthTable, PressFrame};
-use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
+use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, TetMesh};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
 use twintac_softbody::{Element, Frame, Material, SoftBody, SolveError, SolverSettings, State};
@@ -15,7 +15,7 @@ use twintac_softbody::{Element, Frame, Material, SoftBody, SolveError, SolverSet
 use crate::error::reason;
 use crate::history::solve_quality;
 use crate::readout::{PortReadout, PortSlopes, StressCluster};
-use crate::rounding::Roundings;
+use crate::rounding::{Rims, Roundings};
 use crate::shell::Wall;
 use crate::touch::{contact_radius_mm, first_touch};
 use crate::{PressHistory, SimulateError, SimulateSettings};
@@ -51,6 +51,12 @@ struct Fineness {
     /// as fractions of the number allowed without rims.
     even_share: f64,
     rim_share: f64,
+    /// Smallest factor by which all edges get shorter where nodes are left over after rims are
+    /// refined.
+    finest: f64,
+    /// Whether there is a line of the mesh where a rim begins. Tables of the cube of PhysTac come no
+    /// closer to those of fine meshes with it.
+    rim_lines: bool,
     /// The element of meshes with fine rims, if the settings have the default one. With as many
     /// nodes, blended takes two to three times as long on the fine meshes of tables.
     rim_element: Element,
@@ -62,6 +68,8 @@ const TABLE: Fineness = Fineness {
     top: 1.0,
     even_share: 1.0,
     rim_share: 1.0,
+    finest: 1.0,
+    rim_lines: false,
     rim_element: Element::Layered,
 };
 
@@ -74,6 +82,8 @@ const PATH: Fineness = Fineness {
     top: 0.6,
     even_share: 0.7,
     rim_share: 1.6,
+    finest: 0.8,
+    rim_lines: true,
     rim_element: Element::Blended,
 };
 
@@ -314,7 +324,8 @@ impl Gel {
                 max_mm: i.max_mm,
             })
             .collect();
-        let generate = |scale: f64, stretches: &[Vec<Stretch>; 2], top_edge_ratio: f64| {
+        let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
+        let generate = |scale: f64, rims: &Rims, top_edge_ratio: f64| {
             // There is at least one edge over the gel's height, however few nodes are allowed.
             let [coarse_mm, fine_mm] =
                 [coarse_mm, fine_mm].map(|edge_mm| self.height_mm().min(scale * edge_mm));
@@ -326,7 +337,8 @@ impl Gel {
                         center_mm: touched + way_mm.extend(0.0),
                         radius_mm,
                         edge_mm: fine_mm,
-                        stretches: stretches.clone(),
+                        stretches: rims.stretches.clone(),
+                        lines_mm: rims.lines_mm.clone(),
                     })
                     .collect(),
                 top_edge_ratio,
@@ -335,7 +347,7 @@ impl Gel {
             // Each of these tetrahedra will be cut into eight, with edges half as long.
             twintac_mesh::generate_unchecked(solid, &sensor.surfaces, &inclusions, &settings.scaled(2.0))
         };
-        let even = |scale: f64| generate(scale, &Default::default(), 1.0);
+        let even = |scale: f64| generate(scale, &Rims::default(), 1.0);
         let (fineness, most) = match ways_mm {
             None => (&TABLE, self.settings.max_nodes),
             Some(_) => (&PATH, self.settings.max_path_nodes),
@@ -343,18 +355,25 @@ impl Gel {
         let coarsest = self.height_mm() / fine_mm;
         let mut solver = self.settings.solver.clone();
         let (scale, mut mesh) = coarsen(even, [fineness.scale, coarsest], most)?;
-        let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
         let rims = |scale: f64, rim_scale: f64| {
             let edge_mm = scale * fine_mm;
             let per_radius = self.settings.edges_per_rounding / rim_scale;
-            roundings.stretches(per_radius, [rim_scale * fineness.sharpest * edge_mm, edge_mm])
+            let mut rims = roundings.rims(per_radius, [rim_scale * fineness.sharpest * edge_mm, edge_mm]);
+            if !fineness.rim_lines {
+                rims.lines_mm = Default::default();
+            }
+            rims
         };
-        if rims(scale, 1.0).iter().any(|axis| !axis.is_empty()) {
+        if rims(scale, 1.0).stretches.iter().any(|axis| !axis.is_empty()) {
             let most_even = (fineness.even_share * most as f64) as usize;
             let (scale, _) = coarsen(even, [scale, coarsest], most_even)?;
             let most = (fineness.rim_share * most as f64) as usize;
-            let rimmed = |rim_scale: f64| generate(scale, &rims(scale, rim_scale), fineness.top);
-            let with_rims = closely(rimmed, [1.0, 1.0 / fineness.sharpest], most)?;
+            // Below 1, all edges get shorter; beyond, only those at rims get longer.
+            let rimmed = |fewer: f64| {
+                let (scale, rim_scale) = (scale * fewer.min(1.0), fewer.max(1.0));
+                generate(scale, &rims(scale, rim_scale), fineness.top)
+            };
+            let with_rims = closely(rimmed, [fineness.finest, 1.0 / fineness.sharpest], most)?;
             if with_rims.n_nodes_refined() <= most {
                 mesh = with_rims;
                 if solver.element == Element::default() {
@@ -648,5 +667,40 @@ fn soft_material(material: &twintac_sensor::GelMaterial) -> Material {
         model: material.model.clone(),
         bulk_modulus_kpa: material.bulk_modulus_kpa,
         prony: material.prony.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether the mesh of a bar's press, 3 mm wide with a rim of 0.5 mm, has lines at ±1 mm, where
+    /// the rim begins.
+    fn has_lines(ways_mm: Option<&[DVec2]>, max_nodes: usize) -> bool {
+        let settings = SimulateSettings {
+            max_nodes,
+            max_path_nodes: max_nodes,
+            ..SimulateSettings::fine()
+        };
+        let gel = Gel::new(
+            Arc::new(Sensor::read("../../../sensors/phystac.toml").unwrap()),
+            settings,
+        );
+        let bar = Shape::Box {
+            size_mm: [3.0, 10.0, 10.0],
+            edge_radius_mm: 0.5,
+        };
+        let mesh = gel.mesh_for(&bar, &Pose::IDENTITY, 1.0, ways_mm).unwrap();
+        [-1.0, 1.0].iter().all(|line_mm: &f64| {
+            let mut nodes = mesh.body.mesh().nodes_mm.iter();
+            nodes.any(|node| (node.x - line_mm).abs() < 0.01)
+        })
+    }
+
+    #[test]
+    fn meshes_of_paths_have_a_line_where_a_rim_begins_if_they_resolve_it() {
+        assert!(has_lines(Some(&[]), 20_000));
+        assert!(!has_lines(Some(&[]), 2_000));
+        assert!(!has_lines(None, 20_000));
     }
 }

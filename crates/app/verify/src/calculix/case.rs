@@ -103,10 +103,14 @@ impl Case {
             to_mm,
             edge_mm: edge_mm * scale,
         };
-        let (plan, top_edge_mm) = match self.shape {
+        let (plan, level_edges_mm) = match self.shape {
             Shape::Sphere { .. } if self.is_quarter() => {
-                let lines = |to_mm: f64| divide([0.0, to_mm], edge_mm, &[stretch(0.0, 7.5, 0.75)]);
-                (Plan::tensor(&lines(half_mm.x), &lines(half_mm.y)), 0.5)
+                // Pressures are compared 1 mm from the bonded edge at the end of the block, where
+                // the stress is singular.
+                let (contact, end) = (stretch(0.0, 7.5, 0.75), stretch(half_mm.x - 1.5, half_mm.x, 0.4));
+                let x_mm = divide([0.0, half_mm.x], edge_mm, &[contact, end]);
+                let y_mm = divide([0.0, half_mm.y], edge_mm, &[contact]);
+                (Plan::tensor(&x_mm, &y_mm), [0.4, 0.5])
             }
             Shape::Cylinder {
                 radius_mm,
@@ -120,7 +124,7 @@ impl Case {
                 let outwards = divide([0.0, 1.0], 0.25 * scale, &[stretch(0.0, 0.0, 0.15)]);
                 let n_side = (9.0 / scale).round() as usize;
                 let plan = Plan::rings(self.place_mm, n_side, &radii_mm, &outwards[1..], bounds_mm);
-                (plan, 0.5)
+                (plan, [edge_mm, 0.5])
             }
             Shape::Box {
                 size_mm,
@@ -136,14 +140,18 @@ impl Case {
                     ];
                     divide([-half_mm[axis], half_mm[axis]], edge_mm, &rims)
                 };
-                (Plan::tensor(&lines(0), &lines(1)), 0.5)
+                (Plan::tensor(&lines(0), &lines(1)), [edge_mm, 0.5])
             }
             _ => bail!("{}: there is no reference mesh for this indenter", self.name),
         };
+        let [board_edge_mm, top_edge_mm] = level_edges_mm;
         let levels_mm = divide(
             [0.0, SIZE_MM.z],
             edge_mm,
-            &[stretch(SIZE_MM.z, SIZE_MM.z, top_edge_mm)],
+            &[
+                stretch(0.0, 0.0, board_edge_mm),
+                stretch(SIZE_MM.z, SIZE_MM.z, top_edge_mm),
+            ],
         );
         Ok(Bricks::extrude(&plan, &levels_mm))
     }

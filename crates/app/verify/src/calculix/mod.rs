@@ -2,12 +2,12 @@
 
 mod bricks;
 mod case;
-mod compare;
 mod deck;
-mod difference;
 mod face;
+mod ours;
 mod output;
 mod plan;
+mod pressed;
 mod reference;
 mod rigid;
 
@@ -19,8 +19,7 @@ use twintac_plot::{Panel, Panels};
 
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 use case::{Case, LINE_Y_MM, Level, line_mm};
-use compare::Compared;
-use reference::Reference;
+use pressed::{Difference, Pressed};
 
 /// Where references come from.
 #[derive(Clone, Copy)]
@@ -61,36 +60,39 @@ const ROUGHNESS_LIMIT_PERCENT: f64 = 3.0;
 pub(crate) fn run(_: Effort) -> Result<Outcome> {
     let [calculix, finer] = Source::ALL.map(|source| reference::read(Path::new(source.file())));
     let (calculix, finer) = (calculix?, finer?);
-    let (mut compared, mut figures) = (Vec::new(), Vec::new());
+    let (mut plotted, mut figures) = (Vec::new(), Vec::new());
     for case in case::all() {
-        if let Some(theirs) = finest(&calculix, &case) {
-            let is_whole = theirs.frames.len() == case.depths_mm.len();
-            let ours = compare::compare(&case, theirs)?;
-            figures.extend(figures_of(&ours, Source::Calculix, is_whole));
-            figures.push(nodes_of(&case, Source::Calculix, theirs));
-            let is_coarser = |other: &&Reference| other.case == case.name && other.n_nodes < theirs.n_nodes;
-            for coarser in calculix.iter().filter(is_coarser) {
-                figures.extend(uncertainty(&case, coarser, "CalculiX", theirs));
-            }
-            if is_whole {
-                compared.push(ours);
-                continue;
-            }
+        let ours = ours::solve(&case)?;
+        figures.push(Figure::told(
+            format!("{}: nodes", case.name),
+            ours.n_nodes as f64,
+            "",
+        ));
+        let of_case = |all: &[Pressed]| -> Vec<Pressed> {
+            let meshes = all.iter().filter(|mesh| mesh.case == case.name);
+            meshes.cloned().collect()
+        };
+        let mut calculix = of_case(&calculix);
+        calculix.sort_by_key(|mesh| mesh.n_elements);
+        let independent = calculix.pop();
+        if let Some(reference) = &independent {
+            figures.extend(figures_of(&case.name, &ours, reference, &calculix)?);
+            let name = format!("{}: nodes of CalculiX", case.name);
+            figures.push(Figure::told(name, reference.n_nodes as f64, ""));
+            figures.extend(uncertainty("CalculiX", reference, &calculix));
         }
-        let is_it = |reference: &&Reference| reference.case == case.name;
-        let meshes: Vec<&Reference> = finer.iter().filter(is_it).collect();
-        let theirs = Reference::mean(&meshes).with_context(|| {
+        let finer = of_case(&finer);
+        let reference = Pressed::mean(&finer.iter().collect::<Vec<_>>()).with_context(|| {
             format!(
                 "no reference of {0} is kept; `cargo xtask verify calculix --finer {0}` computes it",
                 case.name
             )
         })?;
-        let ours = compare::compare(&case, &theirs)?;
-        figures.extend(figures_of(&ours, Source::Finer, true));
-        for mesh in meshes {
-            figures.extend(uncertainty(&case, mesh, "finer", &theirs));
-        }
-        compared.push(ours);
+        let title = format!("{} beside {}", case.name, Source::Finer.name());
+        figures.extend(figures_of(&title, &ours, &reference, &finer)?);
+        figures.extend(uncertainty("finer", &reference, &finer));
+        let whole = independent.filter(|reference| reference.frames.len() == ours.frames.len());
+        plotted.push([ours, whole.unwrap_or(reference)]);
     }
     Ok(Outcome {
         done: format!(
@@ -106,10 +108,11 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
              {LINE_Y_MM} mm) the error is the root mean square, relative to the largest pressure there; a \
              checkerboard pattern at ν = 0.4999 would increase it.\n\nCalculiX reaches all depths for the \
              sphere at ν = 0.49 alone, on a coarse and on a fine mesh. For the cylinder and the bar it \
-             solves a coarse mesh (1,400 to 1,700 elements) to 1 mm, whose force has a limit, but whose \
-             pressures far from the indenter are not accurate; at ν = 0.4999 it finds no equilibrium. For these cases the reference is TwinTac's own \
+             solves a coarse mesh (1,400 to 1,700 elements) to 1 mm; at ν = 0.4999 it finds no \
+             equilibrium. Its force has a limit in all cases. A pressure has one where its two meshes \
+             differ by less than that limit.\n\nThe second reference, of all cases, is TwinTac's own \
              solver with elements that are quadratic everywhere, on three meshes that are finer, also at \
-             rims: the mean of the three. How far each mesh is from the reference shows how large its own \
+             rims: the mean of the three. How far each mesh is from a reference shows how large its own \
              error may be.\n\nThe \
              references are stored in `{}` and `{}`; `cargo xtask verify calculix --ccx \
              CASE` (Debian package calculix-ccx, in `{}`) and `--finer CASE` compute them again for the \
@@ -123,93 +126,83 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
             name: "pressure",
             caption: format!(
                 "From the top: {}.",
-                compared
+                plotted
                     .iter()
-                    .map(|compared| compared.case.as_str())
+                    .map(|[ours, _]| ours.case.as_str())
                     .collect::<Vec<_>>()
                     .join(", ")
             ),
-            scene: plot(&compared),
+            scene: plot(&plotted),
         }],
     })
 }
 
-/// The reference of a case on its finest mesh.
-fn finest<'a>(references: &'a [Reference], case: &Case) -> Option<&'a Reference> {
-    let of_case = references.iter().filter(|reference| reference.case == case.name);
-    of_case.max_by_key(|reference| reference.n_elements)
-}
-
-fn nodes_of(case: &Case, source: Source, reference: &Reference) -> Figure {
-    let name = format!("{}: nodes of {}", case.name, source.name());
-    Figure::told(name, reference.n_nodes as f64, "")
-}
-
-/// The errors of a case. Pressures have limits if `is_reference`: those of CalculiX's coarse meshes
-/// have none.
-fn figures_of(compared: &Compared, source: Source, is_reference: bool) -> Vec<Figure> {
-    let largest = |errors: &mut dyn Iterator<Item = f64>| errors.map(f64::abs).fold(0.0, f64::max);
-    let case = match source {
-        Source::Calculix => compared.case.clone(),
-        Source::Finer => format!("{} beside {}", compared.case, source.name()),
-    };
-    let mut figures = vec![Figure::told(
-        format!("{case}: nodes"),
-        compared.n_nodes as f64,
-        "",
-    )];
-    for frame in &compared.frames {
-        let name = |what: &str| format!("{case}, {} mm: {what}", frame.depth_mm);
-        figures.push(Figure::at_most(
-            FORCE_LIMIT_PERCENT,
-            name("force"),
-            frame.force_error_percent(),
-            "%",
-        ));
-        let mut taxels = frame
-            .pressure_kpa
-            .keys()
-            .map(|taxel| frame.pressure_error_percent(taxel));
-        let worst = largest(&mut taxels);
-        let pressures = [
-            ("pressure at the worst taxel", worst, PRESSURE_LIMIT_PERCENT),
+/// The differences from a reference, whose error is estimated by its other meshes. A pressure has a
+/// limit where they differ from the reference by less.
+fn figures_of(title: &str, ours: &Pressed, reference: &Pressed, others: &[Pressed]) -> Result<Vec<Figure>> {
+    let mut figures = Vec::new();
+    for (index, (frame, theirs)) in ours.frames.iter().zip(&reference.frames).enumerate() {
+        ensure!(
+            frame.depth_mm == theirs.depth_mm,
+            "{title}: the reference has other depths; compute it again"
+        );
+        let name = |what: &str| format!("{title}, {} mm: {what}", frame.depth_mm);
+        let (error, others) = (frame.difference(theirs), others.iter());
+        let doubts: Vec<Difference> = others
+            .filter_map(|other| Some(other.frames.get(index)?.difference(theirs)))
+            .collect();
+        let force = name("force");
+        figures.push(Figure::at_most(FORCE_LIMIT_PERCENT, force, error.force, "%"));
+        type Part = fn(&Difference) -> f64;
+        let pressures: [(&str, Part, f64); 2] = [
+            (
+                "pressure at the worst taxel",
+                |of| of.worst_taxel,
+                PRESSURE_LIMIT_PERCENT,
+            ),
             (
                 "pressure along the board",
-                frame.roughness_percent(),
+                |of| of.along_board,
                 ROUGHNESS_LIMIT_PERCENT,
             ),
         ];
-        figures.extend(pressures.map(|(what, percent, limit)| {
-            if is_reference {
-                Figure::at_most(limit, name(what), percent, "%")
-            } else {
-                Figure::told(name(what), percent, "%")
+        figures.extend(pressures.map(|(what, part, limit)| {
+            let is_known = !doubts.is_empty() && doubts.iter().all(|doubt| part(doubt) < limit);
+            match is_known {
+                true => Figure::at_most(limit, name(what), part(&error), "%"),
+                false => Figure::told(name(what), part(&error), "%"),
             }
         }));
     }
-    figures
+    Ok(figures)
 }
 
-/// The largest differences of a mesh of this kind from the reference.
-fn uncertainty(case: &Case, mesh: &Reference, kind: &str, reference: &Reference) -> [Figure; 2] {
-    let [force, pressure] = mesh.largest_difference_percent(reference);
-    let about = format!(
-        "{}: {kind} mesh of {} nodes from the reference",
-        case.name, mesh.n_nodes
-    );
-    [
-        Figure::told(format!("{about}: force"), force, "%"),
-        Figure::told(format!("{about}: pressure at the worst taxel"), pressure, "%"),
-    ]
+/// The largest differences of the other meshes from a reference.
+fn uncertainty<'a>(
+    kind: &'a str,
+    reference: &'a Pressed,
+    others: &'a [Pressed],
+) -> impl Iterator<Item = Figure> + 'a {
+    others.iter().flat_map(move |mesh| {
+        let largest = mesh.largest_difference(reference);
+        let (case, n_nodes) = (&mesh.case, mesh.n_nodes);
+        let about = format!("{case}: {kind} mesh of {n_nodes} nodes from the reference");
+        [
+            ("force", largest.force),
+            ("pressure at the worst taxel", largest.worst_taxel),
+            ("pressure along the board", largest.along_board),
+        ]
+        .map(|(what, percent)| Figure::told(format!("{about}: {what}"), percent, "%"))
+    })
 }
 
-/// The plot of the pressure along the board.
-fn plot(compared: &[Compared]) -> Scene {
-    let panel = |compared: &Compared| {
+/// The plot of the pressure along the board in this project's solver and the reference.
+fn plot(plotted: &[[Pressed; 2]]) -> Scene {
+    let panel = |both: &[Pressed; 2]| {
         let series = |side: usize| {
-            compared.frames.iter().map(move |frame| {
+            both[side].frames.iter().map(move |frame| {
                 let pressures = line_mm().into_iter().zip(&frame.line_kpa);
-                let points = pressures.map(|(at, pair)| [at.x, pair[side]]).collect();
+                let points = pressures.map(|(at, &kpa)| [at.x, kpa]).collect();
                 match side {
                     0 => plots::line("TwinTac", 0, points),
                     _ => twintac_plot::Series {
@@ -220,7 +213,7 @@ fn plot(compared: &[Compared]) -> Scene {
             })
         };
         Panel {
-            name: compared.case.replace("-nu", ", ν 0."),
+            name: both[0].case.replace("-nu", ", ν 0."),
             y_label: "kPa".to_owned(),
             series: series(0).chain(series(1)).collect(),
             y_range: None,
@@ -229,7 +222,7 @@ fn plot(compared: &[Compared]) -> Scene {
     Panels {
         title: format!("Pressure on the board along y = {LINE_Y_MM} mm at each depth"),
         x_label: "x, mm".to_owned(),
-        panels: compared.iter().map(panel).collect(),
+        panels: plotted.iter().map(panel).collect(),
         panel_height_px: 130.0,
         logarithmic: false,
     }
@@ -257,7 +250,7 @@ pub(crate) fn compute_references(source: Source, prefix: &str) -> Result<()> {
                 .map(|level| reference::compute(case, level))
                 .into_iter()
                 .collect::<Result<_>>()?,
-            Source::Finer => compare::finer(case)?,
+            Source::Finer => ours::finer(case)?,
         };
         let mut kept = reference::read(file)?;
         kept.retain(|other| other.case != case.name);

@@ -126,14 +126,14 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         figures.push(Figure::told(of("samples"), found.n_samples as f64, ""));
         figures.push(Figure::told(of("residuals"), found.noise_percent, "%"));
         figures.push(Figure::told(of("condition"), found.condition, ""));
-        panels.push(residuals(panels.len() + 1, &found));
+        panels.push(residuals(case.name, &found));
     }
     Ok(Outcome {
         done: done.trim_end().to_owned(),
         figures,
         plots: vec![Plot {
             name: "residuals",
-            caption: "Each line shows means over hundredths of a press; 1, 2 … are the materials in the order of the table.".into(),
+            caption: "Each line shows means over hundredths of a press.".into(),
             scene: Panels {
                 title: "Fitted minus measured force".into(),
                 x_label: "fraction of the press (%)".into(),
@@ -147,7 +147,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
 }
 
 /// Fitted minus measured force, % of the largest: means in [`WINDOWS`] parts of each press.
-fn residuals(number: usize, found: &Fit) -> Panel {
+fn residuals(material: &str, found: &Fit) -> Panel {
     let line = |(index, signal): (usize, &FittedSignal)| {
         let largest = signal.measured.iter().copied().fold(0.0, f64::max);
         let size = signal.measured.len().div_ceil(WINDOWS);
@@ -160,7 +160,7 @@ fn residuals(number: usize, found: &Fit) -> Panel {
     };
     Panel {
         y_label: "residual (% of force)".into(),
-        name: number.to_string(),
+        name: material.to_owned(),
         series: found.signals.iter().enumerate().map(line).collect(),
         ..Panel::default()
     }
@@ -196,14 +196,14 @@ fn cases() -> Vec<Case> {
     let shear = ("shear_modulus_kpa", 20.0);
     vec![
         Case {
-            name: "neo-Hookean and surface height",
+            name: "neo-Hookean, height",
             truth: neo_hookean(20.0, 0.47, &[]),
             start: neo_hookean(35.0, 0.47, &[]),
             free: vec![shear, ("depth_offset_mm", 0.2)],
             presses: vec![ball(&[[30.0, 4.0], [30.0, 0.0]])],
         },
         Case {
-            name: "neo-Hookean and bulk modulus",
+            name: "neo-Hookean, bulk",
             truth: neo_hookean(20.0, 0.45, &[]),
             start: neo_hookean(35.0, 0.40, &[]),
             free: vec![shear, ("bulk_modulus_kpa", 20.0 * 2.9 / 0.3)],
