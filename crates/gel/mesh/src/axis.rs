@@ -76,8 +76,8 @@ impl Axis {
 }
 
 impl Core<'_> {
-    /// Lines over the focus, evenly spaced except at its stretches and lines. Lines closer than half an edge
-    /// to an end of the axis are left out.
+    /// Lines over the focus, evenly spaced except at its stretches and lines. Lines closer than
+    /// half an edge to an end of the axis are left out.
     fn lines_mm(&self, [low_mm, high_mm]: [f64; 2]) -> Result<Vec<f64>, MeshError> {
         let [below_mm, above_mm] = [self.side_mm(-1.0)?, self.side_mm(1.0)?];
         let offsets_mm = below_mm

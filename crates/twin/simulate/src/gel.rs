@@ -54,8 +54,8 @@ struct Fineness {
     /// Smallest factor by which all edges get shorter where nodes are left over after rims are
     /// refined.
     finest: f64,
-    /// Whether there is a line of the mesh where a rim begins. Tables of the cube of PhysTac come no
-    /// closer to those of fine meshes with it.
+    /// Whether there is a line of the mesh where a rim begins. It brings tables of PhysTac's cube
+    /// no closer to those of fine meshes.
     rim_lines: bool,
     /// The element of meshes with fine rims, if the settings have the default one. With as many
     /// nodes, blended takes two to three times as long on the fine meshes of tables.
@@ -674,8 +674,8 @@ fn soft_material(material: &twintac_sensor::GelMaterial) -> Material {
 mod tests {
     use super::*;
 
-    /// Whether the mesh of a bar's press, 3 mm wide with a rim of 0.5 mm, has lines at ±1 mm, where
-    /// the rim begins.
+    /// Whether the mesh for a bar of 3 mm with a rim of 0.5 mm has lines at ±1 mm, where the rim
+    /// begins.
     fn has_lines(ways_mm: Option<&[DVec2]>, max_nodes: usize) -> bool {
         let settings = SimulateSettings {
             max_nodes,

@@ -31,7 +31,8 @@
 //! indenter's axis. When the location of the press moves, the fine cells move along. Results at
 //! neighbouring locations then differ by physics and not by the positions of nodes. A path that
 //! slides is meshed finely all along. A punch (an indenter with a rim) is meshed finely at its rim,
-//! where its force arises: for tables, which are many, about half as finely as for a path. By
+//! where its force arises: for tables, which are many, about half as finely as for a path. If the
+//! edges of a path's mesh resolve a straight rim, the mesh has a line where the rim begins. By
 //! default a path may have about 20,000 nodes ([`SimulateSettings::max_path_nodes`]); in real time
 //! on two cores it can have about 7,000.
 //!
@@ -56,7 +57,7 @@
 //! state     a gel that is pressed frame by frame
 //! rates     a press with its derivatives
 //! touch     the pose of first touch, and the radius of the contact
-//! rounding  the radii of an indenter's edges, which determine the length of mesh edges at its rim
+//! rounding  the radii of an indenter's edges and where its flats end: edges and lines of the mesh
 //! shell     the rigid walls around a gel
 //! readout   pressures at ports, and the stress feature
 //! history   the result of a press in time, and where it ends
