@@ -42,6 +42,7 @@ pub struct Focus {
     /// Where there must be a line of the mesh, along x and along y, relative to the centre, mm; for
     /// example where the flat underside of a punch ends and its rounded rim begins. A line that is
     /// closer than half an edge to the centre, to the radius or to the line before it is left out.
+    /// Only those of the first focus count.
     #[serde(default)]
     pub lines_mm: [Vec<f64>; 2],
 }

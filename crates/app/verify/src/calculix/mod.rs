@@ -76,7 +76,7 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
         calculix.sort_by_key(|mesh| mesh.n_elements);
         let independent = calculix.pop();
         if let Some(reference) = &independent {
-            figures.extend(figures_of(&case.name, &ours, reference, &calculix)?);
+            figures.extend(figures_of(&case.name, &ours, reference, Some(&calculix))?);
             let name = format!("{}: nodes of CalculiX", case.name);
             figures.push(Figure::told(name, reference.n_nodes as f64, ""));
             figures.extend(uncertainty("CalculiX", reference, &calculix));
@@ -89,7 +89,7 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
             )
         })?;
         let title = format!("{} beside {}", case.name, Source::Finer.name());
-        figures.extend(figures_of(&title, &ours, &reference, &finer)?);
+        figures.extend(figures_of(&title, &ours, &reference, None)?);
         figures.extend(uncertainty("finer", &reference, &finer));
         let whole = independent.filter(|reference| reference.frames.len() == ours.frames.len());
         plotted.push([ours, whole.unwrap_or(reference)]);
@@ -137,20 +137,26 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
     })
 }
 
-/// The differences from a reference, whose error is estimated by its other meshes. A pressure has a
-/// limit where they differ from the reference by less.
-fn figures_of(title: &str, ours: &Pressed, reference: &Pressed, others: &[Pressed]) -> Result<Vec<Figure>> {
+/// The differences from a reference. If other meshes of it are given, pressures have limits only
+/// where these differ from it by less.
+fn figures_of(
+    title: &str,
+    ours: &Pressed,
+    reference: &Pressed,
+    others: Option<&[Pressed]>,
+) -> Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for (index, (frame, theirs)) in ours.frames.iter().zip(&reference.frames).enumerate() {
         ensure!(
-            frame.depth_mm == theirs.depth_mm,
-            "{title}: the reference has other depths; compute it again"
+            frame.depth_mm == theirs.depth_mm && frame.line_kpa.len() == theirs.line_kpa.len(),
+            "{title}: the reference has other depths or points; compute it again"
         );
         let name = |what: &str| format!("{title}, {} mm: {what}", frame.depth_mm);
-        let (error, others) = (frame.difference(theirs), others.iter());
-        let doubts: Vec<Difference> = others
-            .filter_map(|other| Some(other.frames.get(index)?.difference(theirs)))
-            .collect();
+        let error = frame.difference(theirs);
+        let doubts = others.map(|others| -> Vec<Difference> {
+            let frames = others.iter().filter_map(|other| other.frames.get(index));
+            frames.map(|other| other.difference(theirs)).collect()
+        });
         let force = name("force");
         figures.push(Figure::at_most(FORCE_LIMIT_PERCENT, force, error.force, "%"));
         type Part = fn(&Difference) -> f64;
@@ -167,8 +173,10 @@ fn figures_of(title: &str, ours: &Pressed, reference: &Pressed, others: &[Presse
             ),
         ];
         figures.extend(pressures.map(|(what, part, limit)| {
-            let is_known = !doubts.is_empty() && doubts.iter().all(|doubt| part(doubt) < limit);
-            match is_known {
+            let is_known = |doubts: &Vec<Difference>| {
+                !doubts.is_empty() && doubts.iter().all(|doubt| part(doubt) < limit)
+            };
+            match doubts.as_ref().is_none_or(is_known) {
                 true => Figure::at_most(limit, name(what), part(&error), "%"),
                 false => Figure::told(name(what), part(&error), "%"),
             }
