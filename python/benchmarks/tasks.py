@@ -135,8 +135,8 @@ def page(results: dict[str, Any]) -> str:
             f"Made by `{COMMAND}` on {machine['processor']}, {machine['processors']} processors (simulated data). Load average at the end: {machine['load_average']:.1f} (what is above "
             f"{N_THREADS} was other work, and made all rates lower).",
             "",
-            f"{N_ENVIRONMENTS} environments ({N_HANDS} of InHandTurn) are stepped in one call on {N_THREADS} threads from Python, and begin anew by themselves. Robots follow the script of their task, those of ExploreShape move by chance. All "
-            f"take turns in one run; of {N_STEPS} calls each, the median counts, and 80 % lie within the range. *Touched* is the part of sensors that had read more than {FEELS_KPA} kPa, of ExploreShape in the episode's first press; an episode's first observation has no reading.",
+            f"{N_ENVIRONMENTS} environments ({N_HANDS} of InHandTurn) are stepped in one call on {N_THREADS} threads from Python, and begin anew by themselves. Robots follow the scripted baseline of their task, those of ExploreShape the random one. All "
+            f"take turns in one run; of {N_STEPS} calls each, the median counts, and 80 % lie within the range. *Touched* is the fraction of sensors that had read more than {FEELS_KPA} kPa, of ExploreShape in the episode's first press; an episode's first observation has no reading.",
             "",
             "| environment | steps a second | range | touched |",
             "|---|---:|---:|---:|",

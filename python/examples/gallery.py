@@ -77,10 +77,17 @@ def press_frame_by_frame(names: dict[str, Any], axes: Axes) -> None:
     axes.set(xlabel="location of the ball on its way back, mm", ylabel="pressure at the port, kPa (simulated)")
 
 
+def looks_like(picture: Path, other: Path) -> bool:
+    """Whether two pictures differ by no more than what a few lines do that are shifted by a pixel."""
+    pixels, others = plt.imread(picture), plt.imread(other)
+    return pixels.shape == others.shape and bool(np.abs(pixels - others).mean() < 0.01)
+
+
 PICTURES: dict[str, Callable[[dict[str, Any], Axes], None]] = {
     function.__name__: function
     for function in (fast_gel_arrays, find_a_contact, imperfect_sensors, press_frame_by_frame, read_a_sensor, recording_to_pandas)
 }
+REAL_TIME = {read_a_sensor.__name__}
 
 
 def main() -> None:
@@ -96,9 +103,16 @@ def main() -> None:
         names = runpy.run_path(str(HERE / f"{name}.py"))
         figure, axes = plt.subplots(figsize=(5.6, 3.5), layout="constrained")
         PICTURES[name](names, axes)
-        figure.savefig(asked.folder / f"{name}.png", dpi=110)
+        picture, new = asked.folder / f"{name}.png", asked.folder / f"{name}.new.png"
+        figure.savefig(new, dpi=110)
         plt.close(figure)
-        print(f"wrote {asked.folder / name}.png", file=sys.stderr)
+        # An emulated sensor is read in real time: its frames come at slightly other times each run.
+        if name in REAL_TIME and picture.exists() and looks_like(new, picture):
+            new.unlink()
+            print(f"left {picture}: the new one looks the same", file=sys.stderr)
+            continue
+        new.replace(picture)
+        print(f"wrote {picture}", file=sys.stderr)
 
 
 if __name__ == "__main__":

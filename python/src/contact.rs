@@ -118,7 +118,8 @@ impl Contact {
         self.contact.force_deviation_n
     }
 
-    /// Covariance of x, y and depth, mm, and yaw, radians, in this order; `[4, 4]`.
+    /// Covariance of x, y and depth, mm, and yaw, radians, in this order; `[4, 4]`. Its units are
+    /// products of these: mm², mm rad and rad².
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         rows(py, self.contact.covariance.as_flattened().to_vec(), [4, 4])

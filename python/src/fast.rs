@@ -199,7 +199,7 @@ impl FastReader {
     /// - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
     ///
     /// Returns the pressure at each port, kPa, `[n_taxels]`, and the wrench, `[6]`: force on the
-    /// gel, N, and torque about the centre of the gel's top, N mm.
+    /// gel, N, and torque about the centre of the top of the gel's bounding box, N mm.
     fn read<'py>(&self, py: Python<'py>, bodies: Vec<(Body, Pose)>) -> PyResult<Reading<'py>> {
         self.answer(py, |reader, pressure_kpa, wrench| {
             reader.read(&placed(&bodies), pressure_kpa, wrench);
@@ -289,7 +289,8 @@ impl FastBatch {
     ///   sensor unless given.
     ///
     /// Returns the pressures at the ports, kPa, `[n_sensors, n_taxels]`, and the wrenches,
-    /// `[n_sensors, 6]`: force on each gel, N, and torque about the centre of its top, N mm.
+    /// `[n_sensors, 6]`: force on each gel, N, and torque about the centre of the top of its
+    /// bounding box, N mm.
     ///
     /// Raises `Error` for an array with another shape or with numbers that are not allowed; its
     /// `field` names the array.

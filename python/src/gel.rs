@@ -57,8 +57,9 @@ impl Gel {
         Ok(Self::of(sensor, settings.simulate))
     }
 
-    /// Presses the gel down to the depth of the press, which takes about a second. If the material
-    /// of the gel relaxes, it does so at the speed of the press. Ctrl-C ends the wait.
+    /// Presses the gel down to the depth of the press, which takes about a second. The hold and the
+    /// way back are not simulated. If the material of the gel relaxes, it does so at the speed of
+    /// the press. Ctrl-C ends the wait.
     ///
     /// - `press`: the press.
     ///

@@ -203,7 +203,7 @@ impl Inverse {
             return Err(unusable(
                 py,
                 "inverse",
-                "is not of a fast gel, which alone knows the floor",
+                "is not of a `FastGel`, which alone computes pressures at the base of the gel",
             ));
         };
         let map = py.detach(|| inverse.floor_map(spacing_mm)).or_raise(py)?;
@@ -220,7 +220,7 @@ impl Inverse {
 
     fn __repr__(&self) -> String {
         let by = match self.model {
-            Model::Fast(_) => "a fast gel",
+            Model::Fast(_) => "a surrogate",
             Model::Tables(_) => "tables",
             Model::Twin(_) => "a twin",
         };
@@ -260,7 +260,7 @@ impl Tracker {
     /// Returns the contact, or `None` if the readings are within noise.
     ///
     /// Raises `Error` for a time below 0, for another number of readings, and for readings that are
-    /// not finite or beyond a million kPa.
+    /// beyond a million kPa or, without a twin as the model, not finite.
     fn update(
         &self,
         py: Python<'_>,

@@ -19,8 +19,8 @@ const SLOWEST_MM_PER_S: f64 = 1e-3;
 /// A straight press: down to a depth, a hold, and back up.
 ///
 /// - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
-/// - `at_mm`: location of the indenter's origin in the gel's plane, x and y, mm; the middle of the
-///   gel unless given.
+/// - `at_mm`: location of the indenter's origin in the gel's frame, x and y, mm; the origin of that
+///   frame unless given, which need not be the middle of the gel.
 /// - `depth_mm`: depth below first touch, mm, above 0.
 /// - `yaw_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
 /// - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.

@@ -42,7 +42,8 @@ const TABLE: &str = "variation";
 /// - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: temperature drift that all taxels share, and
 ///   the deviation of each taxel's drift from it, kPa/K.
 /// - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the
-///   tare, K, and the time constant with which the temperature fluctuates, s.
+///   tare, K, and the time constant with which the temperature fluctuates, s, above 0 if the
+///   deviation is.
 /// - `cross_talk`, `cross_talk_deviation`: fraction of every other taxel's pressure that a taxel
 ///   reads in addition, beyond what the gel spreads, and its deviation from pair to pair.
 /// - `noise_deviation_kpa`: deviation of the noise of each reading, kPa.
@@ -95,8 +96,8 @@ impl SensorVariation {
     }
 
     /// The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`.
-    /// Gains, noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
-    /// hysteresis, installation and faults are assumed.
+    /// Gains and their growth, noise, resolution and frame rate are those found on the emulated
+    /// PhysTac; the drift of the zeros, hysteresis, installation and faults are assumed.
     #[staticmethod]
     fn usual() -> Self {
         Self {
@@ -254,7 +255,7 @@ impl SensorState {
         format!("<SensorState of {} taxels, simulated>", self.state.n_taxels())
     }
 
-    /// Raises `TypeError`: a `SensorState` cannot be pickled or copied.
+    /// Raises `TypeError`: a `SensorState` cannot be pickled. Copying it returns the object itself.
     fn __reduce__(&self) -> PyResult<()> {
         no_pickle("SensorState", "set it back in the process that took it")
     }
@@ -361,7 +362,8 @@ impl SensorBatch {
     ///
     /// Returns the last readings that the bus of each sensor delivered, kPa,
     /// `[n_sensors, n_taxels]`, and the wrenches, `[n_sensors, 6]`: force on each gel, N, and
-    /// torque about the centre of its top, N mm, in the frame of the sensor as it is installed.
+    /// torque about the centre of the top of its bounding box, N mm, in the frame of the sensor as
+    /// it is installed.
     ///
     /// Raises `Error` for an argument with another shape or with numbers that are not allowed (its
     /// `field` names the argument), and if a thing touches one sensor twice. The sensors are then
@@ -429,8 +431,9 @@ impl SensorBatch {
     }
 
     /// Wrench of each touch by itself in the last step, in the order of the touches,
-    /// `[n_touches, 6]`: force on the gel, N, and torque about the centre of its top, N mm, in the
-    /// frame of the sensor as described. Without a `Coupling` there are none: `[0, 6]`.
+    /// `[n_touches, 6]`: force on the gel, N, and torque about the centre of the top of its
+    /// bounding box, N mm, in the frame of the sensor as described. Without a `Coupling` there are
+    /// none: `[0, 6]`.
     fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let wrenches: Vec<f32> = self.batch.look(py, |batch| match batch {
             Batch::Free(_) => Vec::new(),
@@ -476,6 +479,8 @@ impl SensorBatch {
     /// The state of one sensor. A sensor that is set back to it continues with the same bits.
     ///
     /// - `sensor`: index of the sensor, from 0.
+    ///
+    /// Raises `Error` for an index out of range.
     fn state(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<SensorState> {
         let sensor = self.number(&sensor)?;
         let state = self.batch.look(py, |batch| match batch {
@@ -493,8 +498,9 @@ impl SensorBatch {
     /// - `sensor`: index of the sensor, from 0.
     /// - `state`: the state.
     ///
-    /// Raises `Error` for the state of another kind of sensor or with another number of taxels, and
-    /// for one with a twin if these sensors have none, or the reverse.
+    /// Raises `Error` for an index out of range, for the state of another kind of sensor or with
+    /// another number of taxels, and for one with a twin if these sensors have none, or the
+    /// reverse.
     #[allow(clippy::needless_pass_by_value)] // as Python gives it
     fn set_state(&self, py: Python<'_>, sensor: Given<'_>, state: SensorState) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
@@ -521,6 +527,8 @@ impl SensorBatch {
     /// Resets one sensor to rest until its next step. Its deviations stay.
     ///
     /// - `sensor`: index of the sensor, from 0.
+    ///
+    /// Raises `Error` for an index out of range.
     fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
         self.batch.look(py, |batch| match batch {
@@ -534,6 +542,8 @@ impl SensorBatch {
     /// - `sensor`: index of the sensor, from 0.
     /// - `number`: identifies the new sensor. Numbers below the number of sensors give the first
     ///   sensors of the batch.
+    ///
+    /// Raises `Error` for an index out of range.
     fn replace(&self, py: Python<'_>, sensor: Given<'_>, number: Given<'_>) -> PyResult<()> {
         let sensor = self.number(&sensor)?;
         let number = number.seed("number")?;

@@ -143,7 +143,9 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// A roof-shaped wedge that touches with its ridge, which lies along y.
+    /// A wedge like a roof upside down. It touches with its ridge, which lies along y. `angle_rad`
+    /// is the full angle between its two faces, `length_mm` the length of the ridge, and
+    /// `height_mm` the height from the ridge to the base.
     #[staticmethod]
     fn wedge(
         py: Python<'_>,

@@ -255,6 +255,8 @@ impl Tasks {
     /// - `environment`: index of the environment, from 0.
     ///
     /// Returns red, green and blue of each pixel, 0 to 255; `[240, 600, 3]`.
+    ///
+    /// Raises `Error` for an index out of range.
     fn picture<'py>(&self, py: Python<'py>, environment: Given<'_>) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let environment = environment.count("environment", 0..=self.n_environments - 1)?;
         let pixels = self

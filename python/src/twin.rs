@@ -340,7 +340,7 @@ impl TwinAtPlace {
 
     /// Computes one more frame.
     ///
-    /// - `since_previous_s`: time since the last frame, s.
+    /// - `since_previous_s`: time since the last frame, s. The first frame ignores it.
     /// - `depth_mm`: depth below first touch, mm; negative above the gel.
     ///
     /// Returns the predicted readings of the barometers above their zero, kPa; `[n_taxels]`.
@@ -441,10 +441,11 @@ impl TwinState {
 
     /// Computes one more frame of every sensor.
     ///
-    /// - `since_previous_s`: time since the last frame, s.
+    /// - `since_previous_s`: time since the last frame, s. Sensors whose gel has rested ignore it.
     /// - `pressure_kpa`: pressures at the ports, kPa; `[n_sensors, n_taxels]`.
     ///
-    /// Returns the predicted readings of the barometers, kPa; `[n_sensors, n_taxels]`.
+    /// Returns the predicted readings of the barometers above the zero that `tare` or
+    /// `tare_untouched` has set, else above the twin's own zero, kPa; `[n_sensors, n_taxels]`.
     ///
     /// Raises `Error` for a time below 0, and for pressures of another shape or that are not
     /// finite.
@@ -486,6 +487,8 @@ impl TwinState {
     /// earlier presses. The zero stays.
     ///
     /// - `sensor`: index of the sensor, from 0.
+    ///
+    /// Raises `Error` for an index out of range.
     fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
         let sensor = sensor.count("sensor", 0..=self.shape[0] - 1)?;
         self.state.look(py, |state| state.rest(sensor))

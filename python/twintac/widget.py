@@ -1,7 +1,7 @@
 """A notebook widget: sliders move an indenter over and into a gel, and the readings of the taxels
 are drawn.
 
-It needs ipywidgets: `pip install 'twintac[notebook]'`.
+It needs ipywidgets: `pip install './python[notebook]'` in a checkout.
 
     from twintac import Sensor
     from twintac.widget import GelWidget
@@ -23,7 +23,7 @@ from twintac import Error, Gel, GelState, Pose, PressureMap, Sensor
 try:
     from ipywidgets import HTML, Dropdown, FloatSlider, HBox, VBox
 except ModuleNotFoundError as _absent:
-    raise ModuleNotFoundError("the widget needs ipywidgets: pip install 'twintac[notebook]'", name=_absent.name) from _absent
+    raise ModuleNotFoundError("the widget needs ipywidgets: pip install ipywidgets", name=_absent.name) from _absent
 
 _Point = npt.NDArray[np.float64]
 

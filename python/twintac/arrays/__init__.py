@@ -3,9 +3,12 @@ sensors at once, on the device of the arrays, and with gradients.
 
 `load` turns a `FastGel` into arrays; `ball`, `box` and other functions make shapes, and `stack`
 combines them. `read` computes pressures, force and gap from poses. With `friction`, `step` goes
-from one time step to the next; it takes the state of the gels and returns the new one. All data are
-tuples of arrays, and no function keeps a state, so that `jit`, `vmap` and `grad` work. No array is
-copied to the host. On CPUs alone, `FastBatch` is several times faster.
+from one time step to the next; it takes the state of the gels and returns the new one. `read_twin`
+adds a trained twin (`twin`), and `deliver` the sensor variation (`spread`, `draw`, `connected`).
+
+All data are tuples of arrays, and no function keeps a state, so that `jit`, `vmap` and `grad` work.
+No array is copied to the host. PyTorch and NumPy 1 need the package array-api-compat. On CPUs
+alone, `FastBatch` is several times faster.
 """
 
 from ._channels import contact, history, proximity, push

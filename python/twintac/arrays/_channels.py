@@ -12,7 +12,8 @@ def contact(before: Array, value: Array, *, on: float, off: float) -> Array:
 
     Args:
         before: the contact at the time step before, a mask `[...]`; at first none.
-        value: what tells a contact, `[...]`: the normal force, N, or the largest reading, kPa.
+        value: the quantity from which contact is detected, `[...]`: the normal force, N, or the
+            largest reading, kPa.
         on, off: the two thresholds; `off` is not larger than `on`.
 
     Returns:
@@ -29,10 +30,10 @@ def contact(before: Array, value: Array, *, on: float, off: float) -> Array:
 
 def proximity(gap_mm: Array) -> Array:
     """How near the nearest body is to each sensor: 1 where it touches, falling linearly to 0 where it
-    is 2 mm away or farther, as `SensorBatch.proximity` in Rust.
+    is 2 mm away or farther, as `SensorBatch.proximity`.
 
     Args:
-        gap_mm: distance of each body, mm, `[..., n_bodies]`: of a reading.
+        gap_mm: distances of the bodies, mm, `[..., n_bodies]`: `gap_mm` of a reading.
 
     Returns:
         `[...]`.

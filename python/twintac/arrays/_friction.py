@@ -98,7 +98,9 @@ class HeldReading(NamedTuple):
     pressure_kpa: Array
     """Pressure at each port, kPa, `[..., n_taxels]`."""
     wrench: Array
-    """Force on the gel, N, and torque about the top of the gel's middle, N mm, `[..., 6]`."""
+    """Force on the gel, N, and torque about the centre of the top of the gel's bounding box, N mm,
+    `[..., 6]`.
+    """
     gap_mm: Array
     """The gap as in `Reading`, mm, `[..., n_bodies]`."""
     wrench_of_bodies: Array

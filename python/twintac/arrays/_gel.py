@@ -85,7 +85,7 @@ class Gel(NamedTuple):
     ports_mm: Array
     """Positions of the ports in the plane of the gel, `[n_taxels, 2]`."""
     center_mm: Array
-    """The top of the gel's middle, the reference point of torques, `[3]`."""
+    """The centre of the top of the gel's bounding box, the reference point of torques, `[3]`."""
 
 
 def load(source: FastGel | str | os.PathLike[str] | bytes, *, like: Array | None = None) -> Gel:

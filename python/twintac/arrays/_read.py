@@ -14,7 +14,9 @@ class Reading(NamedTuple):
     pressure_kpa: Array
     """Pressure at each port, kPa, `[..., n_taxels]`."""
     wrench: Array
-    """Force on the gel, N, and torque about the top of the gel's middle, N mm, `[..., 6]`."""
+    """Force on the gel, N, and torque about the centre of the top of the gel's bounding box, N mm,
+    `[..., 6]`.
+    """
     gap_mm: Array
     """Distance of each body from the nearest point of the gel's surface, mm, negative inside the
     gel, `[..., n_bodies]`. Its gradient is not 0 where nothing touches, in contrast to that of the

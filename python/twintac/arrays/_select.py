@@ -8,9 +8,9 @@ _State = TypeVar("_State")
 
 
 def select(chosen: Array, this: _State, other: _State) -> _State:
-    """Of each sensor, one of two states of the same type, such as `Held`, `Relaxed`, `Drawn` or
-    `Bus`: `this` where the mask `chosen`, `[...]`, is true. It resets chosen sensors or worlds on
-    their device.
+    """Chooses, for each sensor, one of two states of the same type, such as `Held`, `Relaxed`,
+    `Drawn` or `Bus`: `this` where the mask `chosen`, `[...]`, is true, else `other`. It resets
+    chosen sensors or worlds on their device.
     """
     xp = namespace("chosen", chosen)
 

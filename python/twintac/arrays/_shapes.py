@@ -159,9 +159,9 @@ def plane() -> Shapes:
 def mesh(shape: Shape) -> Shapes:
     """Any `Shape` by samples of its distance, in its own frame: triangle meshes (`Shape.surface`,
     `Shape.stl`), unions, rings. Sampling takes from a millisecond to several seconds, for shapes of
-    many triangles and for large ones. The readings of a body that is pressed deeper than half of its
-    thickness are too low, down to zero: samples do not say that a gel is never above a body. A
-    warning says it of bodies that are thinner than 4 mm.
+    many triangles and for large ones. Where a body is pressed deeper than half of its thickness,
+    readings are too low, down to zero, because sampled shapes are not extended upward, as other
+    shapes are. Bodies that are thinner than 4 mm give a warning.
     """
     found = from_samples(shape)
     if (least_mm := thinnest(found)) is not None:

@@ -47,10 +47,10 @@ class Twin(NamedTuple):
 
 
 class Relaxed(NamedTuple):
-    """What the gels of sensors remember of the readings before."""
+    """The state of viscoelastic relaxation of the gels: the result of `rested` and `read_twin`."""
 
     is_rested: Array
-    """Whether the gel has rested until the next moment, `[...]`."""
+    """Whether the gel has rested, so that the next frame ignores the time before it, `[...]`."""
     relaxed_kpa: Array
     """Readings without overstress at the last moment, kPa, `[..., n_taxels]`."""
     overstress_kpa: Array
@@ -104,13 +104,12 @@ def read_twin(
 ) -> tuple[Relaxed, Array]:
     """One more moment: from port pressures to the readings of the barometers, kPa.
 
-    - `before`: what the gels remember; at first what `rested` returns.
-    - `since_previous_s`: the time since then, s, one for all or `[...]`. Gels that have rested
-      ignore it.
+    - `before`: the state after the previous frame; at first the result of `rested`.
+    - `since_previous_s`: time since the previous frame, s, one for all or `[...]`. Gels that have
+      rested ignore it.
     - `pressure_kpa`: what `read` or `step` returns, kPa, `[..., n_taxels]`.
 
-    Returns what gels then remember, and readings above those of an untouched sensor, kPa,
-    `[..., n_taxels]`.
+    Returns the new state, and readings above those of an untouched sensor, kPa, `[..., n_taxels]`.
     """
     xp = namespace("twin", twin.gain)
     if tuple(pressure_kpa.shape)[-1:] != tuple(twin.gain.shape):

@@ -1,5 +1,5 @@
 """Sensor variation as arrays: sensors that differ from a perfect one, each in its own way, and what
-they deliver. This is what Rust's `SensorBatch` does with an `SensorVariation`; the random numbers are
+they deliver. This is what Rust's `SensorBatch` does with a `SensorVariation`; the random numbers are
 others, drawn from keys (`keys`).
 """
 
@@ -67,20 +67,20 @@ class Drawn(NamedTuple):
     is_stuck: Array
     is_late: Array
     coupling: Array
-    """Fraction of each taxel's pressure that each one reads in addition, `[..., reads, feels]`."""
+    """Fraction of taxel j's pressure that taxel i reads in addition (cross-talk), `[..., i, j]`."""
     modulus: Array
-    """Of the gel, relative to that of the surrogate's gel, `[...]`."""
+    """The modulus of the gel over that of the surrogate's gel, `[...]`."""
     offset_mm: Array
-    """Of that frame's origin in the gel's own frame, mm, `[..., 3]`."""
+    """Origin of the frame of the sensor as described, in the frame as installed, mm, `[..., 3]`."""
     rotation: Array
-    """From the frame where the gel should be to its own, `[..., 3, 3]`."""
+    """Rotation from the frame of the sensor as described to that as installed, `[..., 3, 3]`."""
 
 
 class Bus(NamedTuple):
-    """What sensors remember from moment to moment: what `connected` and `deliver` return."""
+    """What the sensors keep from frame to frame: the result of `connected` and `deliver`."""
 
     moment: Array
-    """How many moments went before, `[...]`."""
+    """Number of frames before, `[...]`."""
     temperature_k: Array
     """Of each sensor, above that of its tare."""
     until_frame_s: Array
@@ -151,8 +151,8 @@ def draw(spread: Spread, key: Array, n_taxels: int) -> Drawn:
 
 
 def installed(drawn: Drawn, position_mm: Array, rotation: Array) -> tuple[Array, Array]:
-    """Poses of bodies in the frames of the gels as they are, from poses in the frames where they
-    should be: arguments of `read` and `step`.
+    """Poses of bodies in the frames of the sensors as installed, from poses in the frames as
+    described: arguments of `read` and `step`.
 
     - `position_mm`: `[..., n_bodies, 3]`, mm.
     - `rotation`: `[..., n_bodies, 3, 3]`.
@@ -173,8 +173,8 @@ def stiffened(drawn: Drawn, values: Array) -> Array:
 
 
 def as_described(drawn: Drawn, wrench: Array) -> Array:
-    """Wrenches `[..., n_bodies, 6]` along the axes of the frames where the gels should be, from
-    those along their own axes: `step` returns the latter for `installed` poses."""
+    """Wrenches `[..., n_bodies, 6]` along the axes of the sensors as described, from those along
+    the axes as installed, which `step` returns for `installed` poses."""
     xp = namespace("drawn", drawn.gain)
     back = xp.matrix_transpose(drawn.rotation)[..., None, :, :]
     return xp.concat([_turned(back, wrench[..., :3]), _turned(back, wrench[..., 3:])], axis=-1)
@@ -196,13 +196,13 @@ def deliver(
 ) -> tuple[Bus, Array]:
     """One more moment: from what taxels should read to what the bus delivers.
 
-    - `before`: at first what `connected` returns.
-    - `since_previous_s`: the time since then, s, one for all or `[...]`.
-    - `true_kpa`: `[..., n_taxels]`, the pressures of `read` and `step`, or readings of `read_twin`.
-      They are the clean readings beside those that are returned.
+    - `before`: the state after the previous frame; at first the result of `connected`.
+    - `since_previous_s`: time since the previous frame, s, one for all or `[...]`.
+    - `true_kpa`: what perfect sensors read, kPa, `[..., n_taxels]`: the pressures of `read` and
+      `step`, or the readings of `read_twin`.
 
-    Returns what sensors then remember, and the delivered readings, kPa, `[..., n_taxels]`. Between
-    two frames of the bus, readings stay the same.
+    Returns the new state, and the delivered readings, kPa, `[..., n_taxels]`. Between two frames of
+    the bus, readings stay the same.
     """
     xp = namespace("drawn", drawn.gain)
     is_first = ~before.has_delivered[..., 0]

@@ -22,9 +22,9 @@ HoldForce: press with a wanted force on a ball, a cylinder or a cube that is mou
 to 10 N/mm) at a random location under the gel. A step is a frame of the sensor, 1/55 s; an episode
 has 220 steps.
 
-- Action `[1]`: downward speed, times 10 mm/s.
+- Action `[1]`: downward speed in units of 10 mm/s.
 - Observation `[2 n + 3]`: readings; changes; how far the robot has moved beyond the pose of first
-  touch, times 5 mm; its speed, times 10 mm/s; the wanted force, times 3 N.
+  touch, in units of 5 mm; its speed, in units of 10 mm/s; the wanted force, in units of 3 N.
 - Reward: minus the error of the force, N. The wanted force, 0.3 to 3 N, changes each second.
 - Terminated at more than 10 N, or 4.8 mm deep in the gel; each remaining step then costs 3 N.
 - Info: `force_n`, `wanted_n`, `depth_mm`, `stiffness_n_per_mm`.
@@ -32,29 +32,31 @@ has 220 steps.
 FollowEdge: move the gel's middle in a given direction along the edge of a disc, box or triangle (13
 to 25 mm) that is not observed. A step is 1/55 s; an episode has 330 steps.
 
-- Action `[3]`: velocity along x and y, times 20 mm/s (a longer vector counts as one of 20 mm/s),
-  and downward speed, times 5 mm/s.
-- Observation `[2 n + 7]`: readings; changes; position relative to the start along x and y, times 10
-  mm; depth relative to the start, times 2 mm; the three speeds of the last step; the direction, 1
-  if the object's middle stays on the left and -1 if on the right.
-- Reward: mm of edge that were passed in the given direction, times `1 - (beside / 3 mm)²`, if the
-  force is 0.3 to 6 N; minus 0.1 mm for each newton beyond.
+- Action `[3]`: velocity along x and y in units of 20 mm/s (a longer vector counts as one of 20
+  mm/s), and downward speed in units of 5 mm/s.
+- Observation `[2 n + 7]`: readings; changes; position relative to the start along x and y, in units
+  of 10 mm; depth relative to the start, in units of 2 mm; the three speeds of the last step, in the
+  units of the action; the direction, 1 if the object's middle stays on the left and -1 if on the
+  right.
+- Reward: mm of edge that were passed in the given direction, times `max(0, 1 - (beside / 3 mm)²)`,
+  if the force is 0.3 to 6 N; minus 0.1 mm for each newton above 6 N.
 - Terminated at more than 15 N, or more than 8 mm beside the edge: minus 5 mm.
 - Info: `followed_mm`, `beside_mm` (negative over the object's face), `force_n`, `depth_mm`.
 
 ExploreShape: classify the object as a ball, a cube, a ring, a triangle or a cross. It lies within 5
-mm along x and 3 mm along y, turned by an unknown angle. A step is a press of half a second; an
-episode has four such steps, and a last step without a press.
+mm along x and 3 mm along y of the gel's middle, turned by an unknown angle. A step is a press of
+half a second; an episode has four such steps, and a last step without a press.
 
-- Action `[8]`: location along x, times 12 mm, and y, times 7 mm; depth, from 0.4 to 2.4 mm; a score
-  for each shape: the probabilities are `softmax(5 scores)`.
+- Action `[8]`: location along x in units of 12 mm, and along y in units of 7 mm; depth, -1 for 0.4
+  and 1 for 2.4 mm; a score for each shape, in the order above: the probabilities are
+  `softmax(5 scores)`.
 - Observation `[4 n + 17]`: for each press readings, location and depth as in the action, zeros
   before the press is made; then the number of presses that were made, one-hot of five.
 - Reward: `ln(5 p)`, in nats, where `p` is the probability that the action assigns to the right
   shape. The action is based on the presses before it.
 - Terminated after the last step.
-- Info: `shape` (its number), `is_right` (whether the most probable shape is the right one),
-  `probability_of_right`.
+- Info: `shape` (its number from 0, in the order above), `is_right` (whether the most probable shape
+  is the right one), `probability_of_right`.
 
 InHandTurn: turn an object on the palm of a hand by a wanted angle, 15 to 90 degrees to the left or
 right, without seeing it. The object is a cylinder or a box of unknown size (24 to 38 mm wide), mass
@@ -66,14 +68,14 @@ has two joints, `swing`, sideways, and `close`, towards the middle. A step is 80
   turn: 1 is 10 % of the target's range. The range of `swing` is -0.4 to 0.4 radians, that of `close`
   -0.1 to 0.35 radians. An episode begins with all targets at 0.
 - Observation `[4 (n + 16) + 2]`: four frames, of this step and the three before, the newest first;
-  the wanted angle, times 90 degrees, positive to the left as seen from above; and the part of the
-  episode that is left. A frame has what `touch` measures, what the encoders of the joints measure
-  (their zeros are off by half a degree, their steps are 0.3 degrees), and the targets; both angles
-  are -1 to 1 over their ranges.
+  the wanted angle in units of 90 degrees, positive to the left as seen from above; and the fraction
+  of the episode that is left. A frame has what `touch` measures, what the encoders of the joints
+  measure (zeros off by a standard deviation of 0.5 degrees, steps of 0.3 degrees), and the targets;
+  both angles are -1 to 1 over their ranges.
 - `touch="taxels"`: `n` is 32, the readings of the four fingertips in units of 10 kPa. `"forces"`:
   `n` is 4, the normal force on each fingertip in units of 3 N, as a contact sensor of MuJoCo gives
-  it. `"none"`: `n` is 0. `"truth"`: `n` is 5, for a teacher: the angle that is left, times 90
-  degrees; cosine and sine of four times the angle of a box, 0 for a cylinder; half of the width
+  it. `"none"`: `n` is 0. `"truth"`: `n` is 5, for a teacher: the angle that is left, in units
+  of 90 degrees; cosine and sine of four times the angle of a box, 0 for a cylinder; half of the width
   along both axes, in units of 26 mm. `"truth+taxels"`: both, in this order.
 - Reward: by how many radians the angle came closer to the wanted one, and 0.05 in each step that
   ends less than 5 degrees from it.

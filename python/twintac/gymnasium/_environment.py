@@ -88,8 +88,8 @@ class TouchEnv(gym.Env[Single, Single]):
         return observed[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info(figures[0])
 
     def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
-        """A picture of the object from above and of the readings, `[240, 600, 3]`, 0 to 255; `None`
-        unless `render_mode` is `"rgb_array"`.
+        """A picture of the object from above and of the readings, 0 to 255, `[240, 600, 3]`, for
+        InHandTurn of the hand, `[240, 320, 3]`; `None` unless `render_mode` is `"rgb_array"`.
         """
         return self._tasks.picture(0) if self.render_mode == "rgb_array" else None
 

@@ -131,8 +131,8 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         return observed, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:  # type: ignore[override]
-        """A picture of each environment, `[240, 600, 3]`, 0 to 255; `None` unless `render_mode` is
-        `"rgb_array"`.
+        """A picture of each environment, 0 to 255, `[240, 600, 3]`, for InHandTurn `[240, 320, 3]`;
+        `None` unless `render_mode` is `"rgb_array"`.
         """
         if self.render_mode != "rgb_array":
             return None

@@ -113,7 +113,7 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return [False] * len(self._numbers(indices))
 
     def get_images(self) -> Sequence[npt.NDArray[np.uint8]]:
-        """A picture of each environment, `[240, 600, 3]`, 0 to 255."""
+        """A picture of each environment, 0 to 255, `[240, 600, 3]`, for InHandTurn `[240, 320, 3]`."""
         return [self.tasks.picture(number) for number in range(self.num_envs)]
 
     def _numbers(self, indices: Any) -> list[int]:

@@ -66,13 +66,15 @@ class TouchSensors:
         touch.update(data)
         mujoco.mj_step2(model, data)
 
-    With a persistent `mujoco.batch.Batch` of `n_worlds` simulations, call it after each
+    With a persistent `mujoco.batch.Batch` of `n_worlds` simulations, call
+    `batch.forward(stage=mujoco.mjtStage.mjSTAGE_VEL)` once, and `update` before each
     `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`. With steps of 2 ms or less, bodies of 20 g and
     more stay at rest on the gel.
 
-    `update` writes the forces of the gels into `qfrc_applied` in each step, and changes no other
-    field but the `sensordata` of declared sensors: you, a viewer or a reset may use `xfrc_applied`. With `pushing` you may use
-    `qfrc_applied` as well, and MuJoCo's own force sensors measure the gels.
+    `update` writes the forces of the gels into `qfrc_applied` in each step. It changes no other
+    field but the `sensordata` of declared sensors, so `xfrc_applied` is free for you, a viewer or a
+    reset. With `pushing`, `qfrc_applied` is free as well, and MuJoCo's own force sensors measure
+    the gels.
 
     A gel keeps the state of friction and damping for each pair of geom and sensor in each world. If
     a geom has a new size, mesh or height field, the next update reads its shape again.
@@ -83,9 +85,9 @@ class TouchSensors:
             `add_sensor` makes such sites. Without it, the sensors are those that the MJCF declares
             as user sensors at sites, with the name of the sensor's description before a slash, such
             as `phystac/palm`; `update` then also writes the readings of one world to `sensordata`.
-        sensor: the description of all sensors; PhysTac unless given. For a built-in sensor,
-            `sensor` or `gel` alone is enough.
-        gel: the surrogate of the gel of all sensors; PhysTac's unless given.
+        sensor: the description of all sensors; that of `gel` if that is built in, and PhysTac if
+            neither is given.
+        gel: the surrogate of the gel of all sensors; that of `sensor` if that is built in.
         twin: with a twin, readings are those of its barometers, with gains and viscoelastic
             relaxation; without, readings are the pressures at the ports.
         variation: the sensor variation, from which each sensor is drawn; perfect sensors unless
@@ -180,8 +182,9 @@ class TouchSensors:
 
     @property
     def wrench(self) -> npt.NDArray[np.float32]:
-        """Force on each gel, N, and torque about the top of the gel's middle, N mm, in the frame of
-        the gel, `[n_worlds, n_sensors, 6]`; NaN where the readings are NaN.
+        """Force on each gel, N, and torque about the centre of the top of its bounding box, N mm,
+        in the frame of the sensor as it is installed: that of the site, moved by what `variation`
+        has drawn; `[n_worlds, n_sensors, 6]`, NaN where the readings are NaN.
         """
         return self._shown.wrench
 
@@ -221,8 +224,8 @@ class TouchSensors:
             `readings_kpa`.
 
         Raises:
-            ValueError: for data of another model or number of worlds; if more than one time step
-                has passed; if others have written to the part of `qfrc_applied` that the gels use;
+            ValueError: for data of another model or number of worlds; if more or less than one time
+                step has passed; if others have written to the part of `qfrc_applied` that the gels use;
                 and for a model with force or torque sensors of MuJoCo that would have to measure
                 the gels, which they do within `pushing` only. Nothing is changed then.
         """

@@ -48,8 +48,8 @@ class Touch(NamedTuple):
     pressure_kpa: Array
     """Pressure at each port, kPa, `[..., n_sensors, n_taxels]`."""
     wrench: Array
-    """Force on each gel, N, and torque about the top of the gel's middle, N mm, in the gel's frame,
-    `[..., n_sensors, 6]`.
+    """Force on each gel, N, and torque about the centre of the top of the gel's bounding box, N mm,
+    in the gel's frame, `[..., n_sensors, 6]`.
     """
     gap_mm: Array
     """Distance of each geom from each gel, mm, negative inside the gel,

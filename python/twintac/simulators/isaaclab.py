@@ -1,6 +1,9 @@
 """Touch in Isaac Lab, with PyTorch on the device of its simulation. It was written against the
 interface of Isaac Lab 2.3, and has not been run with Isaac Sim.
 
+    from twintac.arrays import box, centered
+    from twintac.simulators.isaaclab import Sensors
+
     class Palm(DirectRLEnv):
         def _setup_scene(self):
             ...

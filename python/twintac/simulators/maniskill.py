@@ -42,9 +42,9 @@ class Sensors(Gels):
     the gel. With steps of 2 ms or less, bodies of 20 g and more stay at rest on a gel, so set
     `SimConfig(sim_freq=500)` or more.
 
-    On the CPU the gels push actors and links. On a GPU they push actors that are dynamic alone:
-    SAPIEN has no forces on links there, so the robot does not feel what its gels carry. It was not
-    tried on a GPU.
+    On the CPU the gels push actors and links. On a GPU they push only dynamic actors: SAPIEN has no
+    forces on links there, so the robot does not feel what its gels carry. This module has not been
+    run on a GPU.
 
     Args:
         bodies: the actors or links that carry the sensors.

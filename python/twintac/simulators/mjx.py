@@ -1,7 +1,9 @@
 """Touch in MuJoCo XLA (MJX), with JAX. It needs `mujoco-mjx`.
 
-    sensors = mjx_touch.put(model, ["palm"])
-    memory = sensors.begin(mx, data)
+    from twintac.simulators.mjx import put
+
+    sensors = put(model, ["palm"])    # model: a mujoco.MjModel
+    memory = sensors.begin(mx, data)  # mx = mjx.put_model(model), data = mjx.make_data(mx)
     data, memory, touch = sensors.step(mx, data, memory)
 
 All functions are pure functions of one world. `jax.vmap` makes them functions of many worlds. They

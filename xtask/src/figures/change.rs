@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::source;
+use super::{script, source};
 use crate::git::git;
 
 /// Folders of a package that make no figure, unless they are named.
@@ -51,6 +51,8 @@ fn essence(file: &str, text: &str) -> String {
     let own = || text.trim().to_owned();
     if file.ends_with(".rs") {
         source::without_comments_and_tests(text).unwrap_or_else(own)
+    } else if file.ends_with(".py") {
+        script::without_comments(text)
     } else if file.ends_with(".toml") {
         let Ok(mut table) = text.parse::<toml::Table>() else {
             return own();

@@ -2,6 +2,7 @@
 //! (`xtask/figures.toml`).
 
 mod change;
+mod script;
 mod source;
 
 use std::collections::BTreeSet;

@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Run every stage on the emulated bench; needs no hardware and no data, and takes minutes.
+    /// Run every stage on the emulated bench; needs no hardware and no data, and takes a minute.
     Demo(Demo),
     /// Run every stage on recordings of a real sensor.
     Reproduce(Reproduce),
@@ -64,8 +64,8 @@ pub(crate) enum Command {
     Ports(Ports),
     /// Show a sensor's frames live, on a dashboard or as rows of text.
     Stream(Stream),
-    /// Press a sensor along a protocol and record it, on a bench with a robot or on the emulated
-    /// bench.
+    /// Press a sensor along a protocol and record it, on a test setup with a robot or on the
+    /// emulated bench.
     Record(Record),
     /// Export logs as Parquet tables, ROS 2 bags or LeRobot data sets; recover logs that were cut.
     Export(Export),
@@ -134,7 +134,8 @@ pub(crate) struct Reproduce {
     /// Repeat the experiments of the TwinTac paper on the emulated bench instead; takes hours.
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) paper: bool,
-    /// With --paper: few presses of a simple bench, to check that everything runs; takes minutes.
+    /// With --paper: few presses on a simple emulated bench, to check that everything runs; takes
+    /// minutes.
     #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) quick: bool,
     /// Sensor description (TOML).
@@ -201,7 +202,7 @@ pub(crate) struct Mesh {
 
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
-    /// Folder of a run: simulate the locations of its presses, and fit the unknowns of its bench.
+    /// Folder of a run: simulate the locations of its presses, and calibrate its test setup.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out", "path", "settings", "vtk", "seed"])]
     pub(crate) run: Option<PathBuf>,
     /// Sensor description (TOML).
@@ -305,9 +306,9 @@ pub(crate) struct Record {
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) protocol: PathBuf,
-    /// Record on the emulated bench. REALITY is its emulator configuration, with physics and sensor
+    /// Record on the emulated bench. CONFIG is its emulator configuration, with physics and sensor
     /// variation: a TOML file, or the built-in `default`, `harder` or `thicker` [default: default].
-    #[arg(long, value_name = "REALITY", num_args = 0..=1)]
+    #[arg(long, value_name = "CONFIG", num_args = 0..=1)]
     pub(crate) lab: Option<Option<PathBuf>>,
     /// Hardware configuration (TOML): how presses are carried out and, without --lab, the addresses
     /// of the devices [default: rigs/lab.toml].
@@ -320,7 +321,7 @@ pub(crate) struct Record {
     /// value of the sensor description].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "lab")]
     pub(crate) scale: Option<u16>,
-    /// Altitude of the bench, m; the scale is checked against the pressure of free air there
+    /// Altitude of the test setup, m; the scale is checked against the pressure of free air there
     /// [default: anything up to 2000].
     #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
     pub(crate) altitude_m: Option<f32>,
@@ -536,8 +537,8 @@ pub(crate) struct Predict {
 }
 
 /// Frames are processed in their recorded order. The recorded poses are not used for the estimate,
-/// only for its errors. Given are the indenters, the contact heights of the files that the twin was
-/// trained on, and that a press begins untouched.
+/// only for its errors. The estimate knows the indenters, the contact heights of the files that the
+/// twin was trained on, and that a press begins untouched.
 #[derive(Args, Debug)]
 pub(crate) struct Locate {
     /// Folder of a model: a run's `model`.

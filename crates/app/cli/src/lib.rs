@@ -3,8 +3,8 @@
 //!
 //! [`Program`] takes the arguments and the file of the program; [`Program::run`] runs one command
 //! and returns the exit code: 0 if everything was done; 2 if an argument or an input was wrong (the
-//! error says what, where, and what to do); 3 if a bench was stopped (what was recorded until then
-//! is kept).
+//! error says what, where, and what to do); 3 if a test setup was stopped (what was recorded until
+//! then is kept).
 //!
 //! # How it works
 //!

@@ -1,7 +1,7 @@
 //! Data sets of simulated presses, made in shards on any number of machines.
 //!
 //! A [`DatasetPlan`] names the inputs: a sensor's description, a protocol or a number of random
-//! presses, a seed, and what computes the readings (solved gel or surrogate; pressures at the
+//! presses, a seed, and what computes the readings (FEM solution or surrogate; pressures at the
 //! ports, a trained twin, or imperfect sensors). [`Dataset::open`] reads them, and
 //! [`Dataset::make`] makes one [`Shard`]: presses with time in s, poses in mm, force in N and
 //! readings in kPa, as a Parquet file. [`check_dataset`] and [`merge_dataset`] check all shards and

@@ -20,8 +20,8 @@
 //!   ([`Engine::take_frame`]). The mean of the first 32 frames is its zero. [`Offer`] says what the
 //!   surrounding program provides.
 //! - With a surrogate of the gel (`twintac-fast`), several shapes press at once, without friction
-//!   and memory. The drawn gel is then only moved out of the shapes: a surrogate has pressures at
-//!   the taxels and the force, and no stress elsewhere.
+//!   or viscoelastic relaxation. The drawn gel is then only moved out of the shapes: a surrogate
+//!   has pressures at the taxels and the force, and no stress elsewhere.
 //! - A wrong request is answered by `{"error": "…"}` in the words of the command line, and leaves
 //!   the engine as it was.
 //!

@@ -22,7 +22,7 @@
 //!   seen, the contact height is fitted to its first presses, at most 0.3 mm; these are not scored.
 //! - Prediction along a path solves the gel frame by frame, sliding and tilting included, and steps
 //!   the twin with the pressures at the ports. Prediction of a protocol reads tables over depth.
-//!   The solved gel is elastic, as in the tables of the training: the twin has learned the
+//!   The FEM solution is elastic, as in the tables of the training: the twin has learned the
 //!   behaviour over time.
 //! - Contact estimation: the readings' viscoelastic part is removed, frame by frame; what remains
 //!   depends on the present press alone. It is compared with a table of the twin's elastic readings

@@ -14,7 +14,7 @@ use crate::{Run, RunSettings};
 
 impl Run {
     /// Starts the demo and makes its recordings: PhysTac, pressed along the built-in protocol on
-    /// the emulated bench. [`finish`](Self::finish) does the rest. The whole demo takes minutes.
+    /// the emulated bench. [`finish`](Self::finish) does the rest. The whole demo takes a minute.
     ///
     /// # Errors
     /// The folder cannot be written.

@@ -70,7 +70,7 @@
 //! | [`Run`] | a folder in which recordings become a trained and evaluated twin, and a report | `run` |
 //! | [`Twin`], [`Prediction`] | a trained twin, and its predicted readings along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin, stepped frame by frame: at one location, or with given port pressures for thousands of sensors | `twin` |
-//! | [`FastGel`], [`FastBatch`], [`Friction`] | the surrogate of the gel: about 5 µs a reading, thousands of sensors in one call; friction of sliding contacts | `fast` |
+//! | [`FastGel`], [`FastBatch`], [`Friction`] | the surrogate of the gel: 6 to 8 µs a reading, thousands of sensors in one call; friction of sliding contacts | `fast` |
 //! | [`SensorBatch`], [`SensorVariation`], [`CoupledBatch`] | the same with a twin's gains and relaxation, with sensor variation, and with friction of bodies that move freely | `sensors` |
 //! | [`Tasks`], [`Kind`] | tasks for reinforcement learning, many environments in one call | `tasks` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | contact estimation: from readings to location, depth, force, and which of the known shapes | `fast` |
@@ -152,7 +152,7 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! The surrogate of the gel for learning, about 5 µs a reading, with any number of bodies of any
+//! The surrogate of the gel for learning, 6 to 8 µs a reading, with any number of bodies of any
 //! shape:
 //!
 //! ```

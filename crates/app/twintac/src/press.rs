@@ -3,8 +3,8 @@
 use glam::DQuat;
 use twintac_protocol::PressPlan;
 
-/// A straight press: down to a depth, a hold, and back up. By default it is in the middle of the
-/// gel, 1 mm deep, at 2 mm/s, without a hold.
+/// A straight press: down to a depth, a hold, and back up. By default it is at the origin of the
+/// gel's frame, 1 mm deep, at 2 mm/s, without a hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Press {
     pub(crate) plan: PressPlan,
@@ -29,7 +29,7 @@ impl Press {
         }
     }
 
-    /// Sets the location in the gel's plane, mm from its middle.
+    /// Sets the location in the gel's frame, x and y, mm.
     #[must_use]
     pub fn at_mm(mut self, x_mm: f64, y_mm: f64) -> Self {
         (self.plan.x_mm, self.plan.y_mm) = (x_mm, y_mm);

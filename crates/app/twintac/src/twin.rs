@@ -54,9 +54,9 @@ impl Twin {
         self.model.record.provenance
     }
 
-    /// Predicts the readings along a press, at the sensor's frame rate: takes a few seconds. Bench
-    /// and gel are as fitted in training. [`Prediction::certainty`] has the 90 % intervals and the
-    /// OOD score.
+    /// Predicts the readings along a press, at the sensor's frame rate: takes a few seconds. Test
+    /// setup and gel are as fitted in training. [`Prediction::certainty`] has the 90 % intervals
+    /// and the OOD score.
     ///
     /// # Errors
     /// An indenter that the sensor does not have; a location that cannot be pressed.

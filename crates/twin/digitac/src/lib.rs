@@ -66,7 +66,7 @@
 //! `cross-validate` calls it for several seeds and for several ways to hold presses out
 //! ([`HeldOut`]). Divisions share only tables: for a tip of unknown radius, tables are made once
 //! for each of a few radii, and blended. If a file has no training presses, its contact height
-//! comes from its first presses that are felt well ([`recalibrate`]); these are not scored.
+//! comes from its first presses with clear readings ([`recalibrate`]); these are not scored.
 //!
 //! The parametric baseline (in code: kernel) is a power of depth times a smooth function of
 //! distance, with gains and with relaxation that starts from rest, without a static nonlinearity.

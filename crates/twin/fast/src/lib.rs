@@ -2,8 +2,8 @@
 //! solution, fast enough for reinforcement learning.
 //!
 //! Inputs are rigid shapes and their poses in the gel's frame, mm. Outputs are the hydrostatic
-//! pressure at each port, kPa, the force on the gel, N, and the torque about the top of the gel's
-//! middle, N mm. All outputs are `simulated`.
+//! pressure at each port, kPa, the force on the gel, N, and the torque about the centre of the top
+//! of the gel's bounding box, N mm. All outputs are `simulated`.
 //!
 //! - [`FastGel`]: the trained surrogate of one sensor's gel. Those of PhysTac and of its domed
 //!   fingertip are built in ([`FastGel::phystac`], [`FastGel::phystac_tip`]). [`FastGel::train`]

@@ -32,7 +32,7 @@
 //! frames. Overstresses follow each taxel's own readings and nothing else, so they are subtracted
 //! from the readings before this crate sees them (`WithoutMemory` in crate `digitac`). No
 //! hypothesis then needs a history, and the table of a trained twin over location and depth is that
-//! of a gel that has always rested. The zero follows the sensor while nothing is felt. The command
+//! of a gel that has always rested. The zero follows the sensor while nothing touches. The command
 //! `twintac locate` (`crates/app/model/src/locate`) combines the two.
 //!
 //! **Errors of the model are correlated in time.** The error of the model stays the same as long as

@@ -7,8 +7,8 @@
 //! - [`SensorBatch`]: sensors of one kind. The surrogate of the gel gives the pressures at the
 //!   ports. A trained twin, if there is one, adds its gains, static nonlinearity of the ports and
 //!   viscoelastic relaxation. [`SensorVariation`] adds what differs from sensor to sensor.
-//! - [`CoupledBatch`]: the same, with friction and loss between bodies and gels ([`Coupling`]), for
-//!   bodies that move freely.
+//! - [`CoupledBatch`]: the same, with friction and damping between bodies and gels ([`Coupling`]),
+//!   for bodies that move freely.
 //! - [`SensorVariation`]: the distributions that each sensor's deviations are drawn from, in TOML.
 //! - [`SensorState`]: everything of one sensor that a step changes.
 //!
@@ -17,7 +17,7 @@
 //! ```text
 //! poses ─► installation: the pose of each sensor, as it deviates from the described one
 //!       ─► surrogate (twintac-fast): pressures at the ports, force and torque
-//!       ─► CoupledBatch alone: friction and loss
+//!       ─► CoupledBatch alone: friction and damping
 //!       ─► twin (digitac), if there is one: what ideal barometers read
 //!       ─► each sensor's variation: hysteresis, cross-talk, gain, growth, zero, temperature
 //!          drift, noise, resolution, faults, frame rate
@@ -41,9 +41,9 @@
 //! The deviations of a sensor are drawn from a random stream of the seed and the sensor's number.
 //! They do not depend on the other sensors, or on the number of threads.
 //!
-//! Friction and loss are a type of their own, [`CoupledBatch`]. Its steps take a [`TouchId`] with
-//! each touch, because what a gel remembers of a contact belongs to the thing that touches, not to
-//! the thing's shape or its position in a list.
+//! Friction and damping are a type of their own, [`CoupledBatch`]. Its steps take a [`TouchId`]
+//! with each touch, because the state of a contact belongs to the thing that touches, not to the
+//! thing's shape or its position in a list.
 //!
 //! The crate does not depend on solvers or on the emulated bench.
 

@@ -25,7 +25,7 @@ pub(crate) struct FastTrain {
     #[arg(long, value_name = "N")]
     pub(crate) slides: Option<u64>,
     /// Press only with the sensor's own indenters, upright and near its ports, for the twin of a
-    /// bench (`fast_gel` in a run's settings); no press slides then.
+    /// test setup (`fast_gel` in a run's settings); no press slides then.
     #[arg(long, conflicts_with = "slides")]
     pub(crate) own_indenters: bool,
     /// Number of training steps [default: 80000].
@@ -39,14 +39,14 @@ pub(crate) struct FastTrain {
     pub(crate) json: bool,
 }
 
-/// Each width has a comment: its source (real or emulated), its uncertainty, and the number of
+/// Each field has a comment: its source (real or emulated), its uncertainty, and the number of
 /// values. What neither model nor recordings show is left out, with the reason. Without --out the
 /// file is printed.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("source").required(true).multiple(true))]
 pub(crate) struct FastVariation {
     /// Folder of a trained model: a run's `model`. It shows how taxels differ in gain and static
-    /// nonlinearity, and how mountings differ in contact height, position and yaw.
+    /// nonlinearity, and how installations differ in contact height, position and yaw.
     #[arg(long, value_name = "DIR", group = "source")]
     pub(crate) model: Option<PathBuf>,
     /// Recordings of the sensor: presses.parquet files, MCAP logs, CSV files, or patterns. They

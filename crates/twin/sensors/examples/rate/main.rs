@@ -57,10 +57,10 @@ struct Results {
 }
 
 impl Results {
-    /// Rate of the slowest scene with relaxation and all deviations, readings a second.
+    /// Rate of the slowest scene of imperfect sensors, readings a second.
     fn slowest(&self) -> f64 {
-        let with_everything = self.rates.iter().filter(|rate| rate.memory_and_imperfections);
-        with_everything
+        let imperfect = self.rates.iter().filter(|rate| rate.is_imperfect);
+        imperfect
             .map(|rate| rate.readings_per_s.median)
             .fold(f64::INFINITY, f64::min)
     }
@@ -102,11 +102,7 @@ fn measure() -> Result<Results, Box<dyn Error>> {
         eprintln!(
             "{}, {}: {:.0} readings a second",
             rate.body,
-            if rate.memory_and_imperfections {
-                "everything"
-            } else {
-                "perfect"
-            },
+            if rate.is_imperfect { "imperfect" } else { "perfect" },
             rate.readings_per_s.median
         );
     }

@@ -48,11 +48,11 @@ impl Spread {
 pub(crate) struct Rate {
     /// The body that presses.
     pub(crate) body: String,
-    /// Whether the sensors have a twin's relaxation and all deviations.
-    pub(crate) memory_and_imperfections: bool,
+    /// Whether the sensors have a twin's relaxation and the whole sensor variation.
+    pub(crate) is_imperfect: bool,
     /// A reading is that of all taxels of a sensor, with force and torque.
     pub(crate) readings_per_s: Spread,
-    /// Fraction of the sensors that felt something in the last step.
+    /// Fraction of the sensors that were touched in the last step.
     pub(crate) touched: f64,
 }
 
@@ -77,9 +77,9 @@ pub(crate) fn rates(twin: &Twin, [n_sensors, n_threads]: [usize; 2]) -> Result<V
             }
         }
     }
-    let rate = |(kind, memory_and_imperfections, scene, rates): (Kind, bool, Scene, Vec<f64>)| Rate {
+    let rate = |(kind, is_imperfect, scene, rates): (Kind, bool, Scene, Vec<f64>)| Rate {
         body: kind.name().to_owned(),
-        memory_and_imperfections,
+        is_imperfect,
         readings_per_s: Spread::of(rates),
         touched: scene.touched(),
     };

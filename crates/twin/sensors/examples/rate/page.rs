@@ -17,7 +17,7 @@ pub(crate) fn chart(results: &Results) -> Scene {
         ink,
     };
     let ours = results.rates.iter().map(|rate| {
-        let (what, ink) = if rate.memory_and_imperfections {
+        let (what, ink) = if rate.is_imperfect {
             ("", Ink::Series(0))
         } else {
             (", perfect", Ink::Series(1))
@@ -43,9 +43,9 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
     let mut text = format!(
         "# Sensors stepped together\n\nMade by `{}` of {} on {}, {} processors ({} data). Load average at the end: {:.1} (what is above {} was other \
          work, and made all rates lower).\n\n\
-         {} sensors of {} taxels with PhysTac's fast gel are stepped together on {} threads. Each is pressed by a body of its own pose, which slides and tilts at \
-         every step. A reading is that of all taxels of one sensor, with force and torque. *Everything* is a trained twin's memory and all imperfections of \
-         `[variation]`; *perfect* is neither. All scenes take turns in one run; of {} steps each, the median counts, and 80 % lie within the range.\n\n\
+         {} sensors of {} taxels with the surrogate of PhysTac's gel are stepped together on {} threads. Each is pressed by a body of its own pose, which slides and tilts at \
+         every step. A reading is that of all taxels of one sensor, with force and torque. *Imperfect* sensors have a trained twin's \
+         viscoelastic relaxation and the whole sensor variation (`[variation]`), *perfect* ones neither. All scenes take turns in one run; of {} steps each, the median counts, and 80 % lie within the range.\n\n\
          | body | sensors | readings a second | range |\n|---|---|---:|---:|\n",
         results.command,
         results.commit,
@@ -60,11 +60,7 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
         results.steps
     );
     for rate in &results.rates {
-        let what = if rate.memory_and_imperfections {
-            "everything"
-        } else {
-            "perfect"
-        };
+        let what = if rate.is_imperfect { "imperfect" } else { "perfect" };
         let readings = &rate.readings_per_s;
         writeln!(
             text,
@@ -74,7 +70,7 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
             range(readings, 0)
         )?;
     }
-    text += "\n![Readings a second of each scene](sensors.svg)\n\n## One sensor\n\nA call for one sensor with everything, on the calling thread:\n\n\
+    text += "\n![Readings a second of each scene](sensors.svg)\n\n## One sensor\n\nA call for one imperfect sensor, on the calling thread:\n\n\
              | body | call, µs | range, µs |\n|---|---:|---:|\n";
     for latency in &results.latencies {
         let call_us = &latency.call_us;
@@ -90,7 +86,7 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
         text,
         "\nMemory: {:.0} bytes a sensor, counted by the allocator for all of them, with what they share.\n\n## Beside others\n\n\
          One core copies {:.1} GB a second (`memcpy`, more than caches hold). Poses in and readings out are {:.0} bytes a reading: at the rate of the slowest scene \
-         with everything, {:.2} % of what that core could copy.\n\n",
+         of imperfect sensors, {:.2} % of what that core could copy.\n\n",
         results.bytes_per_sensor,
         1e-9 * results.copied_bytes_per_s,
         results.moved_bytes_per_reading,
@@ -100,8 +96,8 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
         (Some(grid), _) => writeln!(
             text,
             "MuJoCo {}'s sensor `touch_grid` of {} cells over a flat pad, as many scenes on as many threads, each with one ball that slides: {:.0} steps of a scene a \
-             second ({}). The slowest of our scenes with everything makes {:.2} readings in that time. MuJoCo's step also moves the bodies. Its sensor sums contact forces in \
-             cells, {:.1} of which feel a ball; it has no gel: no pressure beside the contact, no memory, no imperfections.",
+             second ({}). The slowest of our scenes of imperfect sensors makes {:.2} readings in that time. MuJoCo's step also moves the bodies. Its sensor sums contact forces in \
+             cells, {:.1} of which touch the ball on average; it has no gel: no pressure beside the contact, no relaxation, no sensor variation.",
             grid.version,
             grid.cells,
             grid.steps_per_s.median,

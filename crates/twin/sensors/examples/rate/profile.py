@@ -80,7 +80,7 @@ def functions(program, own):
 def main():
     program = build()
     text = "# What a step of the sensors consists of\n\n"
-    text += f"Made by `{COMMAND}` (simulated data): instructions a reading, with a twin's memory and all imperfections, by the innermost of our "
+    text += f"Made by `{COMMAND}` (simulated data): instructions a reading, with a twin's relaxation and the whole sensor variation, by the innermost of our "
     text += "functions that they belong to, counted by Valgrind's callgrind on one thread. Functions of less than "
     text += f"{LEAST_PERCENT:.0f} % are summed up.\n"
     for body, words in BODIES.items():
