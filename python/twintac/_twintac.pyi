@@ -116,8 +116,8 @@ class Press:
     """A straight press: down to a depth, a hold, and back up.
 
     - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
-    - `at_mm`: location of the indenter's origin in the gel's plane, x and y, mm; the middle of the
-      gel unless given.
+    - `at_mm`: location of the indenter's origin in the gel's frame, x and y, mm; the origin of that
+      frame unless given, which need not be the middle of the gel.
     - `depth_mm`: depth below first touch, mm, above 0.
     - `yaw_rad`: yaw, the rotation of the indenter about the axis of the press, radians.
     - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
@@ -170,8 +170,9 @@ class Gel:
     """
     def __new__(cls, sensor: Sensor, settings: dict[str, Any] | None = None) -> Gel: ...
     def press(self, press: Press) -> Pressed:
-        """Presses the gel down to the depth of the press, which takes about a second. If the material
-        of the gel relaxes, it does so at the speed of the press. Ctrl-C ends the wait.
+        """Presses the gel down to the depth of the press, which takes about a second. The hold and the
+        way back are not simulated. If the material of the gel relaxes, it does so at the speed of
+        the press. Ctrl-C ends the wait.
 
         - `press`: the press.
 
@@ -929,7 +930,7 @@ class TwinAtPlace:
     def step(self, since_previous_s: float, depth_mm: float) -> _Float:
         """Computes one more frame.
 
-        - `since_previous_s`: time since the last frame, s.
+        - `since_previous_s`: time since the last frame, s. The first frame ignores it.
         - `depth_mm`: depth below first touch, mm; negative above the gel.
 
         Returns the predicted readings of the barometers above their zero, kPa; `[n_taxels]`.
@@ -973,10 +974,11 @@ class TwinState:
     def step(self, since_previous_s: float, pressure_kpa: _Floats) -> _Float:
         """Computes one more frame of every sensor.
 
-        - `since_previous_s`: time since the last frame, s.
+        - `since_previous_s`: time since the last frame, s. Sensors whose gel has rested ignore it.
         - `pressure_kpa`: pressures at the ports, kPa; `[n_sensors, n_taxels]`.
 
-        Returns the predicted readings of the barometers, kPa; `[n_sensors, n_taxels]`.
+        Returns the predicted readings of the barometers above the zero that `tare` or
+        `tare_untouched` has set, else above the twin's own zero, kPa; `[n_sensors, n_taxels]`.
 
         Raises `Error` for a time below 0, and for pressures of another shape or that are not
         finite.
@@ -990,6 +992,8 @@ class TwinState:
         earlier presses. The zero stays.
 
         - `sensor`: index of the sensor, from 0.
+
+        Raises `Error` for an index out of range.
         """
     def __len__(self) -> int: ...
 
@@ -1135,7 +1139,10 @@ class Shape:
         """An upright equilateral prism, with its centroid at the origin and one corner towards +x."""
     @staticmethod
     def wedge(angle_rad: float, length_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
-        """A roof-shaped wedge that touches with its ridge, which lies along y."""
+        """A wedge like a roof upside down. It touches with its ridge, which lies along y. `angle_rad`
+        is the full angle between its two faces, `length_mm` the length of the ridge, and
+        `height_mm` the height from the ridge to the base.
+        """
     @staticmethod
     def stl(path: _Path, *, unit: str | None = None, scale: float | None = None) -> Shape:
         """A closed triangle surface from an STL file. Its lowest point is moved to the height of the
@@ -1261,7 +1268,7 @@ class FastReader:
         - `bodies`: each body with its pose in the gel's frame (`gel_from_body`).
 
         Returns the pressure at each port, kPa, `[n_taxels]`, and the wrench, `[6]`: force on the
-        gel, N, and torque about the centre of the gel's top, N mm.
+        gel, N, and torque about the centre of the top of the gel's bounding box, N mm.
         """
     def ood_score(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
         """The out-of-distribution (OOD) score of a contact, without unit. It is 0 if nothing is near
@@ -1317,7 +1324,8 @@ class FastBatch:
           sensor unless given.
 
         Returns the pressures at the ports, kPa, `[n_sensors, n_taxels]`, and the wrenches,
-        `[n_sensors, 6]`: force on each gel, N, and torque about the centre of its top, N mm.
+        `[n_sensors, 6]`: force on each gel, N, and torque about the centre of the top of its
+        bounding box, N mm.
 
         Raises `Error` for an array with another shape or with numbers that are not allowed; its
         `field` names the array.
@@ -1339,7 +1347,8 @@ class SensorVariation:
     - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: temperature drift that all taxels share, and
       the deviation of each taxel's drift from it, kPa/K.
     - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the
-      tare, K, and the time constant with which the temperature fluctuates, s.
+      tare, K, and the time constant with which the temperature fluctuates, s, above 0 if the
+      deviation is.
     - `cross_talk`, `cross_talk_deviation`: fraction of every other taxel's pressure that a taxel
       reads in addition, beyond what the gel spreads, and its deviation from pair to pair.
     - `noise_deviation_kpa`: deviation of the noise of each reading, kPa.
@@ -1371,8 +1380,8 @@ class SensorVariation:
     @staticmethod
     def usual() -> SensorVariation:
         """The sensor variation of a working sensor, the default of the tasks in `twintac.gymnasium`.
-        Gains, noise, resolution and frame rate are those found on the emulated PhysTac; zero drift,
-        hysteresis, installation and faults are assumed.
+        Gains and their growth, noise, resolution and frame rate are those found on the emulated
+        PhysTac; the drift of the zeros, hysteresis, installation and faults are assumed.
         """
     def fields(self) -> dict[str, float]:
         """All fields by name, including those that are 0."""
@@ -1460,7 +1469,8 @@ class SensorBatch:
 
         Returns the last readings that the bus of each sensor delivered, kPa,
         `[n_sensors, n_taxels]`, and the wrenches, `[n_sensors, 6]`: force on each gel, N, and
-        torque about the centre of its top, N mm, in the frame of the sensor as it is installed.
+        torque about the centre of the top of its bounding box, N mm, in the frame of the sensor as
+        it is installed.
 
         Raises `Error` for an argument with another shape or with numbers that are not allowed (its
         `field` names the argument), and if a thing touches one sensor twice. The sensors are then
@@ -1481,13 +1491,16 @@ class SensorBatch:
         """
     def wrench_of_touches(self) -> _Single:
         """Wrench of each touch by itself in the last step, in the order of the touches,
-        `[n_touches, 6]`: force on the gel, N, and torque about the centre of its top, N mm, in the
-        frame of the sensor as described. Without a `Coupling` there are none: `[0, 6]`.
+        `[n_touches, 6]`: force on the gel, N, and torque about the centre of the top of its
+        bounding box, N mm, in the frame of the sensor as described. Without a `Coupling` there are
+        none: `[0, 6]`.
         """
     def state(self, sensor: _Count) -> SensorState:
         """The state of one sensor. A sensor that is set back to it continues with the same bits.
 
         - `sensor`: index of the sensor, from 0.
+
+        Raises `Error` for an index out of range.
         """
     def set_state(self, sensor: _Count, state: SensorState) -> None:
         """Sets one sensor to a state, its own or that of another sensor of such a batch.
@@ -1495,13 +1508,16 @@ class SensorBatch:
         - `sensor`: index of the sensor, from 0.
         - `state`: the state.
 
-        Raises `Error` for the state of another kind of sensor or with another number of taxels, and
-        for one with a twin if these sensors have none, or the reverse.
+        Raises `Error` for an index out of range, for the state of another kind of sensor or with
+        another number of taxels, and for one with a twin if these sensors have none, or the
+        reverse.
         """
     def rest(self, sensor: _Count) -> None:
         """Resets one sensor to rest until its next step. Its deviations stay.
 
         - `sensor`: index of the sensor, from 0.
+
+        Raises `Error` for an index out of range.
         """
     def replace(self, sensor: _Count, number: _Count) -> None:
         """Replaces one sensor by another one at rest, whose deviations are drawn anew.
@@ -1509,6 +1525,8 @@ class SensorBatch:
         - `sensor`: index of the sensor, from 0.
         - `number`: identifies the new sensor. Numbers below the number of sensors give the first
           sensors of the batch.
+
+        Raises `Error` for an index out of range.
         """
     def __len__(self) -> int: ...
 
@@ -1604,6 +1622,8 @@ class Tasks:
         - `environment`: index of the environment, from 0.
 
         Returns red, green and blue of each pixel, 0 to 255; `[240, 600, 3]`.
+
+        Raises `Error` for an index out of range.
         """
     def __len__(self) -> int: ...
 
@@ -1757,7 +1777,7 @@ class Tracker:
         Returns the contact, or `None` if the readings are within noise.
 
         Raises `Error` for a time below 0, for another number of readings, and for readings that are
-        not finite or beyond a million kPa.
+        beyond a million kPa or, without a twin as the model, not finite.
         """
 
 @final
@@ -1803,7 +1823,9 @@ class Contact:
         """Standard deviation of the force, N."""
     @property
     def covariance(self) -> _Float:
-        """Covariance of x, y and depth, mm, and yaw, radians, in this order; `[4, 4]`."""
+        """Covariance of x, y and depth, mm, and yaw, radians, in this order; `[4, 4]`. Its units are
+        products of these: mm², mm rad and rad².
+        """
     @property
     def misfit(self) -> float:
         """Root mean square of the residuals of the readings, in standard deviations of a single frame.
