@@ -33,8 +33,8 @@ impl FastBatch {
     /// - `ends`: where the touches of each sensor end. `[n_sensors]`, the last is the number of
     ///   touches.
     /// - `pressure_kpa`: output; hydrostatic pressure at each port, kPa. `[n_sensors * n_taxels]`
-    /// - `wrench`: output; force on each gel, N, and torque about the top of the gel's middle, N
-    ///   mm. `[n_sensors]`
+    /// - `wrench`: output; force on each gel, N, and torque about the centre of the top of its
+    ///   bounding box, N mm. `[n_sensors]`
     ///
     /// # Panics
     /// If a slice has another length, if ends decrease, if a touch names a body that does not

@@ -76,7 +76,8 @@ impl FastReader {
     /// Pressures and wrench of a sensor under bodies at these poses in the gel's frame.
     ///
     /// - `pressure_kpa`: output; hydrostatic pressure at each port, kPa. `[n_taxels]`
-    /// - `wrench`: output; force on the gel, N, and torque about the top of the gel's middle, N mm.
+    /// - `wrench`: output; force on the gel, N, and torque about the centre of the top of its
+    ///   bounding box, N mm.
     ///
     /// # Panics
     /// If the slice of pressures has another length than there are taxels, or if a pose is not
@@ -138,8 +139,8 @@ impl FastReader {
     /// - `ends`: where the touches of each sensor end. `[n_sensors]`, the last is the number of
     ///   touches.
     /// - `pressure_kpa`: output; hydrostatic pressure at each port, kPa. `[n_sensors * n_taxels]`
-    /// - `wrench`: output; force on each gel, N, and torque about the top of the gel's middle, N
-    ///   mm. `[n_sensors]`
+    /// - `wrench`: output; force on each gel, N, and torque about the centre of the top of its
+    ///   bounding box, N mm. `[n_sensors]`
     ///
     /// # Panics
     /// If a slice has another length, if ends decrease, if a touch names a body that does not

@@ -98,8 +98,8 @@ impl CoupledBatch {
     }
 
     /// The wrench of each touch by itself in the last step, in the order of the touches: force on
-    /// the gel, N, and torque about the top of the gel's middle, N mm, in the frame of the sensor
-    /// as described.
+    /// the gel, N, and torque about the centre of the top of its bounding box, N mm, in the frame
+    /// of the sensor as described.
     pub fn wrench_of_touches(&self) -> impl Iterator<Item = &[f32; 6]> {
         self.batch.chunks.iter().flat_map(|chunk| &chunk.wrench_of_touch)
     }

@@ -31,7 +31,7 @@ pub(crate) struct TaughtFrame {
     pub(crate) edge_mm: f32,
     /// Pressure at each location, kPa.
     pub(crate) floor_kpa: Vec<f32>,
-    /// Force, N, and torque about the top of the gel's middle, N mm.
+    /// Force, N, and torque about the centre of the top of the gel's bounding box, N mm.
     pub(crate) wrench: [f32; 6],
     /// Scale of the errors, kPa: the largest pressure at the ports during the whole press, but at
     /// least [`LEAST_SHARE`] of the largest at the base.
