@@ -100,7 +100,7 @@ def test_the_floor_is_seen_finer_than_the_taxels(table: ReadingTable) -> None:
     assert floor.provenance == "simulated"
     with pytest.raises(Error, match="spacing_mm"):
         inverse.floor_map(0.0)
-    with pytest.raises(Error, match="fast gel"):
+    with pytest.raises(Error, match="FastGel"):
         Inverse.of_tables({"ball": table}).floor_map()
     with pytest.raises(Error, match="another inverse") as caught:
         Inverse(gel, {"ball": Shape.sphere(4.0)}).floor_map().read(contact)
