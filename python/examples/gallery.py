@@ -78,7 +78,9 @@ def press_frame_by_frame(names: dict[str, Any], axes: Axes) -> None:
 
 
 def looks_like(picture: Path, other: Path) -> bool:
-    """Whether two pictures differ by no more than what a few lines do that are shifted by a pixel."""
+    """Whether two pictures differ by at most 1 % of the range of colours on average. Two readings of
+    an emulated sensor differ by 0.55 to 0.67 %, pictures of two examples by 2.9 %.
+    """
     pixels, others = plt.imread(picture), plt.imread(other)
     return pixels.shape == others.shape and bool(np.abs(pixels - others).mean() < 0.01)
 
@@ -109,7 +111,7 @@ def main() -> None:
         # An emulated sensor is read in real time: its frames come at slightly other times each run.
         if name in REAL_TIME and picture.exists() and looks_like(new, picture):
             new.unlink()
-            print(f"left {picture}: the new one looks the same", file=sys.stderr)
+            print(f"left {picture}: the new one looks the same (delete it to draw it anew)", file=sys.stderr)
             continue
         new.replace(picture)
         print(f"wrote {picture}", file=sys.stderr)
