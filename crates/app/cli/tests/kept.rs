@@ -331,7 +331,7 @@ const WORKS: [Work; 10] = [
         ],
         results: &[
             "fast/fast.safetensors",
-            "fast/judgement.json",
+            "fast/evaluation.json",
             "felt/shard-000001-of-000001.parquet",
         ],
         // This is by far the slowest, and the sensor's description affects it as it affects the

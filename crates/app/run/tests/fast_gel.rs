@@ -6,9 +6,9 @@
 use std::path::{Path, PathBuf};
 
 use twintac_fast::TrainSettings;
-use twintac_lessons::{FastSettings, train_fast};
 use twintac_run::{Run, RunSettings};
 use twintac_sensor::SensorFile;
+use twintac_surrogate::{FastSettings, train_fast};
 use twintac_tables::FAST_GEL;
 use twintac_work::Caller;
 
@@ -20,15 +20,15 @@ fn shallow() -> SensorFile {
 }
 
 #[test]
-fn lessons_are_kept_and_tables_follow_from_them() {
+fn training_presses_are_kept_and_tables_follow_from_them() {
     let sensor = shallow();
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let settings = FastSettings {
-        n_lessons: 20,
-        n_exams: 2,
+        n_training_presses: 20,
+        n_test_presses: 2,
         n_slides: 0,
-        n_strange: 0,
+        n_ood: 0,
         own_indenters: true,
         train: TrainSettings {
             n_steps: 200,
@@ -38,13 +38,13 @@ fn lessons_are_kept_and_tables_follow_from_them() {
     let train = |seed: u64| train_fast(&sensor, folder, &settings, seed, &Caller::default());
     let found = train(1).unwrap();
     // Of few training presses, one in five is held out.
-    assert_eq!(found.n_taught, 16);
+    assert_eq!(found.n_trained_on, 16);
     assert!(
         found.held_out.overall.unwrap().nearest_percent < 50.0,
         "{found:?}"
     );
     let bytes = std::fs::read(folder.join(FAST_GEL)).unwrap();
-    assert!(folder.join("judgement.png").exists());
+    assert!(folder.join("evaluation.png").exists());
 
     // A training press that exists is not solved again; a damaged one is.
     let presses = || {

@@ -14,9 +14,9 @@ use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::{LocalNetwork, Perceptron};
 use crate::networks::Networks;
-use crate::novelty::{Coverage, N_TRAITS, Nearest, Novelty};
+use crate::out_of_distribution::{Coverage, N_TRAITS, Nearest, OodScore};
 use crate::surface::SurfaceGrid;
-use crate::taught::{Port, TaughtGel};
+use crate::trained_on::{Port, TrainedOn};
 
 /// Name of the header's entry.
 const ENTRY: &str = "twintac-fast";
@@ -41,20 +41,22 @@ struct Version {
     version: u32,
 }
 
-/// Everything that is not a tensor.
+/// Everything that is not a tensor. Names in the file are those of its version, also of tensors.
 #[derive(Serialize, Deserialize)]
 struct Header {
     version: u32,
     sensor: String,
-    gel: TaughtGel,
+    gel: TrainedOn,
     ports: Vec<Port>,
     /// Locations at which the surrogate is evaluated.
     ports_mm: Vec<glam::DVec2>,
     layout: Layout,
     center_mm: glam::DVec3,
-    /// Distance to the nearest training contact that counts as a score of 1.
-    novelty_unit: f32,
-    error_of_one_lesson: f32,
+    /// Distance to the nearest training contact that counts as an OOD score of 1.
+    #[serde(rename = "novelty_unit")]
+    ood_unit: f32,
+    #[serde(rename = "error_of_one_lesson")]
+    error_of_one_press: f32,
 }
 
 /// PhysTac's surrogate, made by `twintac fast train --sensor sensors/phystac.toml
@@ -90,13 +92,13 @@ impl FastGel {
         let header = Header {
             version: VERSION,
             sensor: self.sensor.clone(),
-            gel: TaughtGel::clone(&self.gel),
+            gel: TrainedOn::clone(&self.gel),
             ports: self.ports.clone(),
             ports_mm: self.ports_mm.clone(),
             layout: self.layout.clone(),
             center_mm: self.center_mm,
-            novelty_unit: self.novelty.nearest.unit,
-            error_of_one_lesson: self.novelty.coverage.error_of_one,
+            ood_unit: self.ood_score.nearest.unit,
+            error_of_one_press: self.ood_score.coverage.error_of_one,
         };
         let header = serde_json::to_string(&header).map_err(FastFileError::new)?;
         let mut tensors = Vec::new();
@@ -115,7 +117,7 @@ impl FastGel {
                 tensors.push((tensor("bias"), vec![bias.len()], bytes(bias)));
             }
         }
-        let Novelty { nearest, coverage } = &self.novelty;
+        let OodScore { nearest, coverage } = &self.ood_score;
         let mut put = |name: &str, shape: Vec<usize>, values: &[f32]| {
             tensors.push((name.to_owned(), shape, bytes(values)));
         };
@@ -125,7 +127,7 @@ impl FastGel {
             &nearest.kept.values,
         );
         put("novelty.scale", vec![N_TRAITS], &nearest.scale);
-        put("novelty.lessons", vec![coverage.lessons.len()], &coverage.lessons);
+        put("novelty.lessons", vec![coverage.presses.len()], &coverage.presses);
         put(
             "novelty.deepest_mm",
             vec![coverage.deepest_mm.len()],
@@ -174,23 +176,23 @@ impl FastGel {
                 .then(|| network(&tensors, "taxels", [n_grid, n_inputs[1]], header.ports_mm.len()))
                 .transpose()?,
         };
-        let novelty = Novelty {
+        let ood_score = OodScore {
             nearest: Nearest {
                 kept: Matrix {
                     values: tensor(&tensors, "novelty.kept", &[None, Some(N_TRAITS)])?,
                     n_columns: N_TRAITS,
                 },
                 scale: tensor(&tensors, "novelty.scale", &[Some(N_TRAITS)])?,
-                unit: header.novelty_unit,
+                unit: header.ood_unit,
             },
             coverage: Coverage {
-                lessons: tensor(&tensors, "novelty.lessons", &[Some(n_grid)])?,
+                presses: tensor(&tensors, "novelty.lessons", &[Some(n_grid)])?,
                 deepest_mm: tensor(&tensors, "novelty.deepest_mm", &[Some(n_grid)])?,
-                error_of_one: header.error_of_one_lesson,
+                error_of_one: header.error_of_one_press,
             },
         };
         Ok(Self {
-            novelty,
+            ood_score,
             sensor: header.sensor,
             gel: Arc::new(header.gel),
             ports: header.ports,

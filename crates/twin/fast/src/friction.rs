@@ -8,7 +8,7 @@ use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
 use crate::shear::Shear;
-use crate::taught::{FastGelMismatch, TaughtGel};
+use crate::trained_on::{FastGelMismatch, TrainedOn};
 use crate::{Body, FastReader};
 
 /// Radius of the smallest contact, mm: a smaller contact lies between the points of the grid.
@@ -38,7 +38,7 @@ pub struct Friction {
     sensor: String,
     /// The gel that the friction acts on; shared with the reader once both are known to be the
     /// same.
-    gel: Arc<TaughtGel>,
+    gel: Arc<TrainedOn>,
     coefficient: f64,
     shear_modulus_kpa: f64,
     poissons_ratio: f64,
@@ -66,7 +66,7 @@ impl Friction {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         Self {
             sensor: sensor.name.clone(),
-            gel: Arc::new(TaughtGel::of(sensor)),
+            gel: Arc::new(TrainedOn::of(sensor)),
             coefficient,
             shear_modulus_kpa: sensor.gel.material.shear_modulus_kpa(),
             poissons_ratio: sensor.gel.material.poissons_ratio(),
@@ -83,7 +83,7 @@ impl Friction {
     /// # Errors
     /// All differences, in words.
     pub fn check(&mut self, reader: &FastReader) -> Result<(), FastGelMismatch> {
-        let (of, gel) = reader.taught();
+        let (of, gel) = reader.trained_on();
         if !Arc::ptr_eq(&self.gel, gel) {
             FastGelMismatch::of((of, &self.sensor), gel.differences(&self.gel))?;
             self.gel = Arc::clone(gel);

@@ -7,12 +7,12 @@
 //!
 //! - [`FastGel`]: the trained surrogate of one sensor's gel. Those of PhysTac and of its domed
 //!   fingertip are built in ([`FastGel::phystac`], [`FastGel::phystac_tip`]). [`FastGel::train`]
-//!   makes one from training presses ([`Lesson`]), which `twintac-teach` computes by FEM.
+//!   makes one from training presses ([`FemPress`]), which `twintac-fem-presses` computes by FEM.
 //! - [`Body`]: a rigid shape, prepared so that distances to it are fast.
 //! - [`FastReader`] and [`FastBatch`]: evaluate the surrogate for one sensor or for many.
 //!   [`FastReader::ood_score`] returns the out-of-distribution (OOD) score of a contact.
 //! - [`Friction`]: adds the friction of one body to force, torque and pressures.
-//! - [`FastGel::judge`]: errors on test presses, as a [`Judgement`].
+//! - [`FastGel::evaluate`]: errors on test presses, as an [`Evaluation`].
 //!
 //! # How it works
 //!
@@ -25,19 +25,20 @@
 //! ```
 //!
 //! ```text
-//! distance, columns  signed distances to shapes, also to shapes that continue upward above their
-//!                    tops
-//! contact, surface   the grids over the gel, and the network inputs on them
-//! layout             which grids and patches a sensor has
-//! network, networks  the networks, their forward and backward passes
-//! lesson, training   training presses, and the steps of the optimizer
-//! engine             the trained networks, laid out for fast evaluation
-//! read, batch        evaluation of one sensor, and of many on several threads
-//! novelty            the OOD score
-//! friction, shear, footprint  friction, its effect on pressures, and the area that carries a body
-//! judge              errors on test presses
-//! taught             which gel the surrogate was trained on, and whether it is that of a sensor
-//! model, file        the surrogate, and its file
+//! distance, columns    signed distances to shapes, also to shapes that continue upward above their
+//!                      tops
+//! contact, surface     the grids over the gel, and the network inputs on them
+//! layout               which grids and patches a sensor has
+//! network, networks    the networks, their forward and backward passes
+//! fem_press, training  training presses, and the steps of the optimizer
+//! engine               the trained networks, laid out for fast evaluation
+//! read, batch          evaluation of one sensor, and of many on several threads
+//! out_of_distribution  the OOD score
+//! friction, shear, footprint
+//!                      friction, its effect on pressures, and the area that carries a body
+//! evaluation           errors on test presses
+//! trained_on           which gel the surrogate was trained on, and whether it is that of a sensor
+//! model, file          the surrogate, and its file
 //! ```
 //!
 //! ## Networks
@@ -78,7 +79,8 @@
 //! contain such boxes.
 //!
 //! The result for bars and walls narrower than 1.25 grid spacings depends on where they lie
-//! relative to the points. `novelty/narrow` therefore measures how wide a body is where it presses.
+//! relative to the points. `out_of_distribution/narrow` therefore measures how
+//! wide a body is where it presses.
 //!
 //! ## Training
 //!
@@ -133,33 +135,33 @@ mod columns;
 mod contact;
 mod distance;
 mod engine;
+mod evaluation;
+mod fem_press;
 mod file;
 mod footprint;
 mod friction;
-mod judge;
 mod layout;
-mod lesson;
 mod model;
 mod network;
 mod networks;
-mod novelty;
+mod out_of_distribution;
 mod read;
 mod shear;
 mod simd;
 mod surface;
-mod taught;
 mod touch;
+mod trained_on;
 mod training;
 
 pub use batch::FastBatch;
 pub use distance::Body;
+pub use evaluation::{Evaluation, GroupErrors};
+pub use fem_press::{FemFrame, FemPress, training_places_mm};
 pub use file::FastFileError;
 pub use friction::Friction;
-pub use judge::{GroupErrors, Judgement};
 pub use layout::finest_edge_mm;
-pub use lesson::{Lesson, LessonFrame, lesson_places_mm};
 pub use model::{FastGel, PortElsewhere};
 pub use read::FastReader;
-pub use taught::FastGelMismatch;
 pub use touch::Touch;
+pub use trained_on::FastGelMismatch;
 pub use training::{REPORT_STEPS, TrainProgress, TrainSettings};

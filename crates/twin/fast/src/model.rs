@@ -7,12 +7,12 @@ use thiserror::Error;
 use twintac_sensor::Sensor;
 use twintac_shape::{ShapeError, Solid};
 
-use crate::Lesson;
+use crate::FemPress;
+use crate::fem_press::training_places_mm;
 use crate::layout::Layout;
-use crate::lesson::lesson_places_mm;
 use crate::networks::Networks;
-use crate::novelty::Novelty;
-use crate::taught::{FastGelMismatch, Port, TaughtGel};
+use crate::out_of_distribution::OodScore;
+use crate::trained_on::{FastGelMismatch, Port, TrainedOn};
 use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
 /// A surrogate of one sensor's gel: neural networks from the bodies that touch it to the pressure
@@ -21,7 +21,7 @@ use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 pub struct FastGel {
     pub(crate) sensor: String,
     /// The gel of the training presses; shared with readers.
-    pub(crate) gel: Arc<TaughtGel>,
+    pub(crate) gel: Arc<TrainedOn>,
     /// The ports of the sensor that it was trained for. `[n_taxels]`
     pub(crate) ports: Vec<Port>,
     pub(crate) layout: Layout,
@@ -31,7 +31,7 @@ pub struct FastGel {
     /// Reference point of torques, mm.
     pub(crate) center_mm: DVec3,
     pub(crate) networks: Networks,
-    pub(crate) novelty: Novelty,
+    pub(crate) ood_score: OodScore,
 }
 
 impl FastGel {
@@ -48,7 +48,7 @@ impl FastGel {
     /// If no press has a frame.
     pub fn train(
         sensor: &Sensor,
-        (lessons, held_out): (&[Lesson], &[Lesson]),
+        (presses, held_out): (&[FemPress], &[FemPress]),
         settings: &TrainSettings,
         seed: u64,
         progress: &mut dyn FnMut(TrainProgress),
@@ -56,9 +56,9 @@ impl FastGel {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let layout = Layout::of(sensor);
         let center_mm = (0.5 * (low + high)).with_z(high.z);
-        let places_mm = lesson_places_mm(sensor);
+        let places_mm = training_places_mm(sensor);
         let places = (&places_mm[..], sensor.taxels.len());
-        let frames = Frames::of(lessons, &layout, places, center_mm, &sensor.surfaces)?;
+        let frames = Frames::of(presses, &layout, places, center_mm, &sensor.surfaces)?;
         // A gel that is a surface of triangles may have a symmetric top and different sides.
         let has_known_sides = !matches!(sensor.gel.solid, Solid::Stl { .. });
         let is_symmetric = layout.grid().is_symmetric(center_mm.truncate());
@@ -81,16 +81,16 @@ impl FastGel {
         };
         let networks = train(&course, progress);
         let mut trained = Self {
-            novelty: Novelty::of(&frames, layout.grid(), is_symmetric),
+            ood_score: OodScore::of(&frames, layout.grid(), is_symmetric),
             sensor: sensor.name.clone(),
-            gel: Arc::new(TaughtGel::of(sensor)),
+            gel: Arc::new(TrainedOn::of(sensor)),
             ports,
             ports_mm,
             layout,
             center_mm,
             networks,
         };
-        trained.calibrate_novelty(held_out, &sensor.surfaces)?;
+        trained.calibrate_ood_score(held_out, &sensor.surfaces)?;
         Ok(trained)
     }
 }
@@ -110,7 +110,7 @@ impl FastGel {
     /// # Errors
     /// All differences, in words.
     pub fn check(&self, sensor: &Sensor) -> Result<(), FastGelMismatch> {
-        let mut differences = self.gel.differences(&TaughtGel::of(sensor));
+        let mut differences = self.gel.differences(&TrainedOn::of(sensor));
         differences.extend(Port::difference(&self.read_ports(), &Port::all(sensor)));
         FastGelMismatch::of((&self.sensor, &sensor.name), differences)
     }

@@ -8,9 +8,9 @@ use twintac_shape::Pose;
 use crate::contact::{ContactPoints, N_CHANNELS};
 use crate::engine::{Engine, Scratch};
 use crate::footprint::Footprint;
-use crate::novelty::{Novelty, narrowness};
+use crate::out_of_distribution::{OodScore, narrowness};
 use crate::surface::SurfaceGrid;
-use crate::taught::TaughtGel;
+use crate::trained_on::TrainedOn;
 use crate::{Body, FastGel, Touch};
 
 /// A surrogate ready for evaluation: it owns all memory that an evaluation needs.
@@ -18,7 +18,7 @@ use crate::{Body, FastGel, Touch};
 pub struct FastReader {
     /// The sensor and the gel that it was trained for.
     sensor: Arc<str>,
-    gel: Arc<TaughtGel>,
+    gel: Arc<TrainedOn>,
     points: Arc<ContactPoints>,
     engine: Arc<Engine>,
     /// Network inputs of the sensors that are evaluated together.
@@ -30,7 +30,7 @@ pub struct FastReader {
     carrying: Vec<(DVec2, f32)>,
     ports_mm: Arc<[DVec2]>,
     grid: Arc<SurfaceGrid>,
-    novelty: Arc<Novelty>,
+    ood_score: Arc<OodScore>,
 }
 
 impl FastGel {
@@ -48,7 +48,7 @@ impl FastGel {
             carrying: Vec::new(),
             ports_mm: self.ports_mm.as_slice().into(),
             grid: Arc::new(self.layout.grid().clone()),
-            novelty: Arc::new(self.novelty.clone()),
+            ood_score: Arc::new(self.ood_score.clone()),
             points: Arc::new(points),
             engine: Arc::new(engine),
         }
@@ -69,7 +69,7 @@ impl FastReader {
     }
 
     /// Name of the sensor, and the gel, that it was trained for.
-    pub(crate) fn taught(&self) -> (&str, &Arc<TaughtGel>) {
+    pub(crate) fn trained_on(&self) -> (&str, &Arc<TrainedOn>) {
         (&self.sensor, &self.gel)
     }
 
@@ -111,7 +111,7 @@ impl FastReader {
         let narrow = bodies
             .iter()
             .map(|(body, pose)| narrowness(&self.grid, body, pose));
-        narrow.fold(self.novelty.score(&self.grid, inputs), f32::max)
+        narrow.fold(self.ood_score.score(&self.grid, inputs), f32::max)
     }
 
     /// Network inputs of the points of all grids. `[n_points * N_CHANNELS]`

@@ -4,16 +4,16 @@
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
 use glam::{DQuat, DVec2, DVec3};
-use twintac_fast::{Body, FastGel, Lesson, LessonFrame, Touch, TrainSettings, lesson_places_mm};
+use twintac_fast::{Body, FastGel, FemFrame, FemPress, Touch, TrainSettings, training_places_mm};
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::{Pose, Shape, Surfaces};
 
 /// Presses in which the pressure at the base is proportional to the depth of a ball and decreases
 /// with the distance from it.
-fn lessons(sensor: &Sensor) -> Vec<Lesson> {
-    let places = lesson_places_mm(sensor);
+fn presses(sensor: &Sensor) -> Vec<FemPress> {
+    let places = training_places_mm(sensor);
     let top_mm = sensor.gel.solid.bounds_mm(&sensor.surfaces).1.z;
-    let lesson = |number: u32| {
+    let press = |number: u32| {
         let at = DVec3::new(
             f64::from(number % 5) * 6.0 - 12.0,
             f64::from(number % 3) * 5.0 - 5.0,
@@ -22,7 +22,7 @@ fn lessons(sensor: &Sensor) -> Vec<Lesson> {
         let frame = |depth_mm: f64| {
             let gel_from_indenter = Pose::from_position(at - DVec3::Z * depth_mm);
             let falls = |place: &glam::DVec2| (-place.distance_squared(at.truncate()) / 30.0).exp();
-            LessonFrame {
+            FemFrame {
                 gel_from_indenter,
                 force_n: DVec3::new(0.0, 0.0, -2.0 * depth_mm),
                 torque_n_mm: at.cross(DVec3::new(0.0, 0.0, -2.0 * depth_mm)),
@@ -32,28 +32,28 @@ fn lessons(sensor: &Sensor) -> Vec<Lesson> {
                     .collect(),
             }
         };
-        Lesson {
+        FemPress {
             shape: Shape::Sphere { radius_mm: 5.0 },
             edge_mm: 0.7,
             frames: [1.0, 2.0, 3.0].map(frame).to_vec(),
         }
     };
-    (0..15).map(lesson).collect()
+    (0..15).map(press).collect()
 }
 
-fn gel(n_steps: usize) -> (FastGel, Vec<Lesson>) {
+fn gel(n_steps: usize) -> (FastGel, Vec<FemPress>) {
     gel_of(&SensorFile::phystac().unwrap().sensor, n_steps)
 }
 
-fn gel_of(sensor: &Sensor, n_steps: usize) -> (FastGel, Vec<Lesson>) {
+fn gel_of(sensor: &Sensor, n_steps: usize) -> (FastGel, Vec<FemPress>) {
     let settings = TrainSettings {
         n_steps,
         n_frames: 16,
         ..TrainSettings::default()
     };
-    let lessons = lessons(sensor);
-    let gel = FastGel::train(sensor, (&lessons, &[]), &settings, 1, &mut |_| ()).unwrap();
-    (gel, lessons)
+    let presses = presses(sensor);
+    let gel = FastGel::train(sensor, (&presses, &[]), &settings, 1, &mut |_| ()).unwrap();
+    (gel, presses)
 }
 
 fn read(gel: &FastGel, bodies: &[(&Body, Pose)]) -> ([f32; 8], [f32; 6]) {
@@ -67,13 +67,13 @@ fn ball() -> Body {
 }
 
 #[test]
-fn lessons_are_learned() {
-    let (gel, lessons) = gel(400);
-    let judged = gel.judge(&lessons, &Surfaces::new()).unwrap();
-    let overall = judged.overall.unwrap();
-    assert!(overall.nearest_percent < 12.0, "{judged:?}");
-    assert!(overall.force_percent < 25.0, "{judged:?}");
-    assert_eq!(judged.by_shape.keys().collect::<Vec<_>>(), ["sphere"]);
+fn training_presses_are_learned() {
+    let (gel, presses) = gel(400);
+    let evaluation = gel.evaluate(&presses, &Surfaces::new()).unwrap();
+    let overall = evaluation.overall.unwrap();
+    assert!(overall.nearest_percent < 12.0, "{evaluation:?}");
+    assert!(overall.force_percent < 25.0, "{evaluation:?}");
+    assert_eq!(evaluation.by_shape.keys().collect::<Vec<_>>(), ["sphere"]);
     assert_eq!(overall.n_frames, 45);
 }
 
@@ -89,9 +89,12 @@ fn a_file_reads_the_same_bits() {
 #[test]
 fn taxels_that_reach_over_the_gels_side_are_read_together() {
     let sensor = SensorFile::phystac_tip().unwrap().sensor;
-    let (gel, lessons) = gel_of(&sensor, 200);
-    let judged = gel.judge(&lessons, &Surfaces::new()).unwrap();
-    assert!(judged.overall.unwrap().nearest_percent < 12.0, "{judged:?}");
+    let (gel, presses) = gel_of(&sensor, 200);
+    let evaluation = gel.evaluate(&presses, &Surfaces::new()).unwrap();
+    assert!(
+        evaluation.overall.unwrap().nearest_percent < 12.0,
+        "{evaluation:?}"
+    );
 
     let again = FastGel::from_bytes(&gel.to_bytes().unwrap()).unwrap();
     assert_eq!(again, gel);
@@ -261,7 +264,7 @@ fn ports_may_be_anywhere_on_the_floor() {
 }
 
 #[test]
-fn a_contact_unlike_what_was_taught_is_new() {
+fn a_contact_unlike_the_training_presses_is_out_of_distribution() {
     let (gel, _) = gel(3);
     let mut reader = gel.reader();
     let thin = Body::new(&Shape::Sphere { radius_mm: 1.0 }, &Surfaces::new()).unwrap();
@@ -313,25 +316,25 @@ fn the_built_in_fingertip_carries_a_ball_about_as_a_half_space_does() {
 
 /// The OOD score of a ball, from a surrogate that is trained on the presses at some locations only.
 fn ood_score_of_a_ball(
-    is_taught: impl Fn(&DVec3) -> bool,
+    is_trained_on: impl Fn(&DVec3) -> bool,
     (n_steps, n_held_out): (usize, usize),
 ) -> impl FnMut(DVec3) -> f32 {
     let sensor = SensorFile::phystac().unwrap().sensor;
-    let mut taught = lessons(&sensor);
-    taught.retain(|lesson| is_taught(&lesson.frames[0].gel_from_indenter.position_mm));
-    let held_out = lessons(&sensor)[..n_held_out].to_vec();
+    let mut trained_on = presses(&sensor);
+    trained_on.retain(|press| is_trained_on(&press.frames[0].gel_from_indenter.position_mm));
+    let held_out = presses(&sensor)[..n_held_out].to_vec();
     let settings = TrainSettings {
         n_steps,
         n_frames: 16,
         ..TrainSettings::default()
     };
-    let gel = FastGel::train(&sensor, (&taught, &held_out), &settings, 1, &mut |_| ()).unwrap();
+    let gel = FastGel::train(&sensor, (&trained_on, &held_out), &settings, 1, &mut |_| ()).unwrap();
     let (mut reader, ball) = (gel.reader(), ball());
     move |at_mm| reader.ood_score(&[(&ball, Pose::from_position(at_mm))])
 }
 
 #[test]
-fn a_place_that_was_not_taught_is_new() {
+fn a_location_without_training_presses_is_out_of_distribution() {
     let (middle, edge) = (DVec3::new(0.0, 0.0, 7.5), DVec3::new(13.0, 0.0, 7.5));
     let mut in_the_middle = ood_score_of_a_ball(|at| at.x.abs() < 7.0, (3, 0));
     assert!(in_the_middle(middle) < 1.0 && in_the_middle(edge) > 1.0);
@@ -353,10 +356,10 @@ fn a_gel_that_learned_next_to_nothing_knows_nothing() {
 
 #[test]
 fn a_group_without_frames_has_no_figures() {
-    let (gel, mut lessons) = gel(3);
-    lessons.retain(|lesson| lesson.frames[0].gel_from_indenter.position_mm.x.abs() > 7.0);
-    let judged = gel.judge(&lessons, &Surfaces::new()).unwrap();
-    let groups: Vec<(&str, bool)> = judged
+    let (gel, mut presses) = gel(3);
+    presses.retain(|press| press.frames[0].gel_from_indenter.position_mm.x.abs() > 7.0);
+    let evaluation = gel.evaluate(&presses, &Surfaces::new()).unwrap();
+    let groups: Vec<(&str, bool)> = evaluation
         .by_place
         .iter()
         .map(|(name, errors)| (name.as_str(), errors.is_some()))
@@ -368,10 +371,10 @@ fn a_group_without_frames_has_no_figures() {
         ("75 to 100 %", false),
     ];
     assert_eq!(groups, expected);
-    assert!(judged.at_edge.is_some());
-    assert!(judged.by_depth_mm[&0].is_none() && judged.by_depth_mm[&3].is_some());
+    assert!(evaluation.at_edge.is_some());
+    assert!(evaluation.by_depth_mm[&0].is_none() && evaluation.by_depth_mm[&3].is_some());
 
-    let none = gel.judge(&[], &Surfaces::new()).unwrap();
+    let none = gel.evaluate(&[], &Surfaces::new()).unwrap();
     let text = serde_json::to_string(&none).unwrap();
     assert!(
         text.contains(r#""overall":null"#) && text.contains(r#""0 to 25 %":null"#),

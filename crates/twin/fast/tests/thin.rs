@@ -348,7 +348,7 @@ fn a_tray_presses_as_a_block_or_is_new() {
 }
 
 #[test]
-fn what_was_taught_is_not_new_for_its_width() {
+fn widths_of_training_presses_are_in_distribution() {
     let mut reader = FastGel::phystac().unwrap().reader();
     for indenter in &SensorFile::phystac().unwrap().sensor.indenters {
         let body = body(&indenter.shape);

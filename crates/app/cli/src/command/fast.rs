@@ -1,9 +1,9 @@
 //! `twintac fast train`: trains a surrogate of the gel.
 
 use anyhow::Result;
-use twintac_fast::{GroupErrors, Judgement};
-use twintac_lessons::{FastSettings, Told, train_fast};
+use twintac_fast::{Evaluation, GroupErrors};
 use twintac_sensor::SensorFile;
+use twintac_surrogate::{FastSettings, OodEvaluation, train_fast};
 use twintac_tables::FAST_GEL;
 
 use crate::Program;
@@ -14,8 +14,8 @@ use crate::output::print;
 pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let mut settings = FastSettings::default();
-    settings.n_lessons = arguments.training_presses.unwrap_or(settings.n_lessons);
-    settings.n_exams = arguments.test_presses.unwrap_or(settings.n_exams);
+    settings.n_training_presses = arguments.training_presses.unwrap_or(settings.n_training_presses);
+    settings.n_test_presses = arguments.test_presses.unwrap_or(settings.n_test_presses);
     settings.n_slides = arguments.slides.unwrap_or(settings.n_slides);
     settings.own_indenters = arguments.own_indenters;
     if let Some(steps) = arguments.steps {
@@ -35,19 +35,19 @@ pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     print(&format!(
         "{}: {} training presses; errors against the FEM solution, % of each press's largest value (simulated)",
         path.display(),
-        found.n_taught
+        found.n_trained_on
     ))?;
     print(&format!(
         "{:<NAME$} {:>7} {:>8} {:>7} {:>7} {:>12}",
         "", "frames", "nearest", "all", "force", "> 10 % off"
     ))?;
     print_group("held-out presses", &found.held_out.overall)?;
-    print_judgement(found.exams_name(), &found.exams)?;
+    print_evaluation(found.test_presses_name(), &found.test_presses)?;
     if found.slides.overall.is_some() {
         print_group("test presses that slide and tilt", &found.slides.overall)?;
     }
-    if let Some(strange) = &found.strange {
-        print_strange(strange)?;
+    if let Some(ood) = &found.out_of_distribution {
+        print_ood(ood)?;
     }
     Ok(())
 }
@@ -55,23 +55,23 @@ pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
 /// Width of the column of names.
 const NAME: usize = 46;
 
-fn print_strange(found: &Told) -> Result<()> {
+fn print_ood(found: &OodEvaluation) -> Result<()> {
     print(&format!(
         "out of distribution: errors, flagged %, AUROC % of the OOD score; of the held-out presses, {} % are flagged",
-        figure(found.familiar_flagged_percent, 1)
+        figure(found.in_distribution_flagged_percent, 1)
     ))?;
-    for (kind, told) in &found.kinds {
+    for (kind, evaluation) in &found.kinds {
         print(&format!(
             "{} {:>9} {:>7}",
-            group(&format!("  {kind}"), &told.errors),
-            figure(told.flagged_percent, 1),
-            figure(told.auroc_percent, 1)
+            group(&format!("  {kind}"), &evaluation.errors),
+            figure(evaluation.flagged_percent, 1),
+            figure(evaluation.auroc_percent, 1)
         ))?;
     }
     print(&format!("  all: {}", figure(found.auroc_percent, 1)))
 }
 
-fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
+fn print_evaluation(name: &str, found: &Evaluation) -> Result<()> {
     print_group(name, &found.overall)?;
     for (shape, errors) in &found.by_shape {
         print_group(&format!("  {shape}"), errors)?;
@@ -85,11 +85,7 @@ fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
         "",
         figure(found.untouched_percent, 2)
     ))?;
-    for (novelty, errors) in &found.by_novelty {
-        let kind = match novelty.as_str() {
-            "familiar" => "in-distribution",
-            _ => "out-of-distribution",
-        };
+    for (kind, errors) in &found.by_ood_score {
         print_group(&format!("  {kind} contacts"), errors)?;
     }
     for (number, (place, errors)) in found.by_place.iter().enumerate() {

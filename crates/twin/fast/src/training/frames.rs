@@ -7,7 +7,7 @@ use twintac_shape::{Pose, ShapeError, Surfaces};
 
 use crate::contact::ContactPoints;
 use crate::layout::Layout;
-use crate::{Body, Lesson};
+use crate::{Body, FemPress};
 
 /// Largest gaps between gel and shape of the two added frames without contact, mm: each training
 /// press gets one gap up to each, evenly spread over the presses.
@@ -22,9 +22,9 @@ const SPREAD: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 const LEAST_SHARE: f32 = 0.3;
 
 /// One frame of a training press.
-pub(crate) struct TaughtFrame {
+pub(crate) struct TrainingFrame {
     /// Number of its press.
-    pub(crate) lesson: usize,
+    pub(crate) press: usize,
     /// `[n_points * N_CHANNELS]`
     pub(crate) inputs: Vec<f32>,
     /// Length of the mesh's edges, mm.
@@ -42,15 +42,15 @@ pub(crate) struct TaughtFrame {
 
 /// Training presses of one sensor.
 pub(crate) struct Frames {
-    pub(crate) frames: Vec<TaughtFrame>,
+    pub(crate) frames: Vec<TrainingFrame>,
     /// Locations whose pressure is trained, those of the taxels first.
-    pub(crate) places: Vec<TaughtPlace>,
+    pub(crate) places: Vec<TrainingLocation>,
     /// Number of taxels.
     pub(crate) n_taxels: usize,
 }
 
 /// A location of the base that is below a point of a grid.
-pub(crate) struct TaughtPlace {
+pub(crate) struct TrainingLocation {
     /// Its number among the locations of the training presses.
     pub(crate) number: usize,
     /// The grid's number, and column and row of the point.
@@ -72,7 +72,7 @@ impl Frames {
     }
 
     pub(crate) fn of(
-        lessons: &[Lesson],
+        presses: &[FemPress],
         layout: &Layout,
         (places_mm, n_taxels): (&[DVec2], usize),
         center_mm: DVec3,
@@ -80,38 +80,38 @@ impl Frames {
     ) -> Result<Self, ShapeError> {
         let points = ContactPoints::new(&layout.grids);
         let mut frames = Vec::new();
-        for (number, lesson) in lessons.iter().enumerate() {
-            let body = Body::new(&lesson.shape, surfaces)?;
+        for (number, press) in presses.iter().enumerate() {
+            let body = Body::new(&press.shape, surfaces)?;
             let largest = |n: usize| {
-                let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa[..n]);
+                let floor = press.frames.iter().flat_map(|frame| &frame.floor_kpa[..n]);
                 floor.copied().fold(f32::MIN_POSITIVE, f32::max)
             };
             // The errors of a press far from all ports are relative to the pressures at the ports,
             // but not to almost zero.
             let largest_kpa = largest(n_taxels).max(LEAST_SHARE * largest(places_mm.len()));
-            let forces = lesson.frames.iter().map(|frame| frame.force_n.length() as f32);
+            let forces = press.frames.iter().map(|frame| frame.force_n.length() as f32);
             let largest_n = forces.fold(f32::MIN_POSITIVE, f32::max);
-            let mut teach = |gel_from_indenter: Pose, floor_kpa: Vec<f32>, wrench: [f32; 6]| {
+            let mut add = |gel_from_indenter: Pose, floor_kpa: Vec<f32>, wrench: [f32; 6]| {
                 let mut inputs = vec![0.0; points.n_inputs()];
                 points.fill([(&body, gel_from_indenter)].into_iter(), &mut inputs);
-                frames.push(TaughtFrame {
-                    lesson: number,
+                frames.push(TrainingFrame {
+                    press: number,
                     inputs,
-                    edge_mm: lesson.edge_mm as f32,
+                    edge_mm: press.edge_mm as f32,
                     floor_kpa,
                     wrench,
                     largest_kpa,
                     largest_n,
                 });
             };
-            for frame in &lesson.frames {
+            for frame in &press.frames {
                 let torque = frame.torque_n_mm - center_mm.cross(frame.force_n);
                 let [fx, fy, fz] = frame.force_n.to_array();
                 let wrench = [fx, fy, fz, torque.x, torque.y, torque.z].map(|value| value as f32);
-                teach(frame.gel_from_indenter, frame.floor_kpa.clone(), wrench);
+                add(frame.gel_from_indenter, frame.floor_kpa.clone(), wrench);
             }
             // Frames without contact: their targets are zero.
-            let Some(touch) = lesson.touch() else {
+            let Some(touch) = press.touch() else {
                 continue;
             };
             for (most_mm, spread) in HOVER_MM.into_iter().zip(SPREAD) {
@@ -120,12 +120,12 @@ impl Frames {
                     position_mm: touch.position_mm + gap_mm * DVec3::Z,
                     ..touch
                 };
-                teach(hovering, vec![0.0; places_mm.len()], [0.0; 6]);
+                add(hovering, vec![0.0; places_mm.len()], [0.0; 6]);
             }
         }
         let on_grid = places_mm.iter().enumerate().filter_map(|(number, at)| {
             let grid = layout.grid_at(*at)?;
-            Some(TaughtPlace {
+            Some(TrainingLocation {
                 number,
                 grid,
                 cell: layout.grids[grid].cell(*at).0,

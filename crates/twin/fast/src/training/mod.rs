@@ -4,6 +4,6 @@ mod batch;
 mod frames;
 mod train;
 
-pub(crate) use frames::{Frames, TaughtFrame};
+pub(crate) use frames::{Frames, TrainingFrame};
 pub(crate) use train::{Course, train};
 pub use train::{REPORT_STEPS, TrainProgress, TrainSettings};

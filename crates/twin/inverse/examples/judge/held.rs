@@ -99,7 +99,7 @@ impl Judge {
         let mut watched = Vec::new();
         let is_timed = inverse.n_shapes() > 1;
         let mut is_first = true;
-        for (step, frame) in press.lesson.frames.iter().enumerate() {
+        for (step, frame) in press.solved.frames.iter().enumerate() {
             let n_taxels = self.taxels_mm.len();
             let mut last = (Vec::new(), None);
             for _ in 0..HELD {

@@ -14,7 +14,7 @@ mod summary;
 use std::error::Error;
 use std::time::Instant;
 
-use twintac_fast::{FastGel, lesson_places_mm};
+use twintac_fast::{FastGel, training_places_mm};
 use twintac_inverse::{Inverse, InverseSettings, KnownShape};
 use twintac_sensor::SensorFile;
 
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
         shape: indenter.shape.clone(),
     };
     let shapes: Vec<KnownShape> = sensor.indenters.iter().map(known).collect();
-    let places_mm = lesson_places_mm(&sensor);
+    let places_mm = training_places_mm(&sensor);
     let presses = presses::solved(&sensor, &shapes, &places_mm)?;
     let settings = InverseSettings::default();
     let start = Instant::now();

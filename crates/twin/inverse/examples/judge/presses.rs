@@ -8,11 +8,11 @@ use glam::DVec2;
 use rand::Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use twintac_fast::Lesson;
+use twintac_fast::FemPress;
+use twintac_fem_presses::FemPresses;
 use twintac_inverse::KnownShape;
 use twintac_random::stream;
 use twintac_sensor::Sensor;
-use twintac_teach::Teacher;
 
 /// Number of presses of each shape.
 const OF_EACH: usize = 10;
@@ -30,7 +30,7 @@ pub(crate) struct Solved {
     pub(crate) place_mm: DVec2,
     pub(crate) yaw_rad: f64,
     pub(crate) depth_mm: f64,
-    pub(crate) lesson: Lesson,
+    pub(crate) solved: FemPress,
 }
 
 /// All presses. Those with a stored file are not solved again.
@@ -41,7 +41,7 @@ pub(crate) fn solved(
 ) -> Result<Vec<Solved>, Box<dyn Error + Send + Sync>> {
     let folder = Path::new("runs/inverse");
     std::fs::create_dir_all(folder)?;
-    let teacher = Teacher::new(sensor, places_mm)?;
+    let fem_presses = FemPresses::new(sensor, places_mm)?;
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let (low, high) = (low.truncate() + MARGIN_MM, high.truncate() - MARGIN_MM);
     let solve = |number: usize| {
@@ -54,13 +54,13 @@ pub(crate) fn solved(
         let place_mm = low + (high - low) * DVec2::new(random.random(), random.random());
         let yaw_rad = random.random_range(0.0..TAU);
         let depth_mm = random.random_range(DEPTHS_MM);
-        let lesson = teacher.upright(&shapes[shape].shape, place_mm, yaw_rad, depth_mm)?;
+        let solved = fem_presses.upright(&shapes[shape].shape, place_mm, yaw_rad, depth_mm)?;
         let solved = Solved {
             shape,
             place_mm,
             yaw_rad,
             depth_mm,
-            lesson,
+            solved,
         };
         std::fs::write(path, serde_json::to_vec(&solved)?)?;
         Ok(solved)

@@ -70,7 +70,7 @@ impl Kind {
                 edge_radius_mm: 0.5,
             },
             Self::Boulder => {
-                let surfaces = twintac_teach::exam_surfaces()?;
+                let surfaces = twintac_fem_presses::test_surfaces()?;
                 let (path, _) = surfaces.iter().next().ok_or("no boulder")?;
                 let shape = Shape::Stl(SurfaceFile::new(path));
                 return Ok(Body::new(&shape, &surfaces)?);

@@ -3,16 +3,13 @@
 //!
 //! [`train_fast`] takes a sensor's description, [`FastSettings`] and a seed. It simulates random
 //! training presses with finite elements, trains the surrogate on them, evaluates it on presses
-//! that it was not trained on, and writes `fast.safetensors` (the surrogate), `judgement.json` and
-//! `judgement.png` (its errors) into a folder. The result is a [`FastResult`]; all its numbers are
+//! that it was not trained on, and writes `fast.safetensors` (the surrogate), `evaluation.json` and
+//! `evaluation.png` (its errors) into a folder. The result is a [`FastResult`]; all its numbers are
 //! `simulated`.
 //!
 //! # How it works
 //!
-//! In this crate's identifiers a *lesson* is a training press and an *exam* is a test press;
-//! `taught` means trained on, and `strange` means out-of-distribution (OOD).
-//!
-//! 1. All presses are drawn from the seed and their number (`crates/twin/teach`), solved in
+//! 1. All presses are drawn from the seed and their number (`crates/twin/fem_presses`), solved in
 //!    parallel, and kept one a file in `presses/`: a training that was killed continues with what
 //!    is there.
 //! 2. Of the training presses, one in 20 is held out for evaluation (one in 5 if there are fewer
@@ -22,9 +19,9 @@
 //! 4. The surrogate is evaluated on the held-out presses, on test presses of shapes that no
 //!    training press has, and on test presses that slide and tilt. Errors are those of the
 //!    pressures at the ports and of the force against the FEM solution.
-//! 5. [`Told`] evaluates the OOD score: presses deeper, thinner, sharper, more tilted or with more
-//!    bodies than trained on are compared with held-out ones. It has the fraction of frames above
-//!    the threshold of 1, and the AUROC.
+//! 5. [`OodEvaluation`] evaluates the OOD score: presses deeper, thinner, sharper, more tilted or
+//!    with more bodies than trained on are compared with held-out ones. It has the fraction of
+//!    frames above the threshold of 1, and the AUROC.
 //!
 //! With `own_indenters` all presses use the sensor's own indenters, upright and near its ports, and
 //! there are no sliding and no out-of-distribution presses: such a surrogate serves the twin of one
@@ -33,10 +30,10 @@
 //! The crate reads no environment variable and no argument, prints nothing, and does not depend on
 //! `crates/app/run`.
 
+mod out_of_distribution;
 mod plot;
 mod presses;
-mod strange;
 mod train;
 
-pub use strange::{Told, ToldKind};
+pub use out_of_distribution::{OodEvaluation, OodKindEvaluation};
 pub use train::{FastResult, FastSettings, train_fast};

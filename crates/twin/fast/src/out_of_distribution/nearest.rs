@@ -1,18 +1,18 @@
-//! Distance to the nearest training contact (nearest neighbours as a measure of novelty: Ramaswamy,
+//! Distance to the nearest training contact (nearest neighbours as an OOD score: Ramaswamy,
 //! Rastogi and Shim, 2000).
 
 use twintac_learn::Matrix;
 
 use super::descriptor::{N_TRAITS, traits};
 use crate::surface::SurfaceGrid;
-use crate::training::{Frames, TaughtFrame};
+use crate::training::{Frames, TrainingFrame};
 
 /// One of this many training presses is used to find how far its contacts are from those of all
 /// other presses.
 const ONE_ASKED_OF: usize = 8;
 
 /// Fraction of those contacts whose score is at most 1.
-const FAMILIAR: f64 = 0.99;
+const IN_DISTRIBUTION: f64 = 0.99;
 
 /// Descriptors of the training contacts, without their locations.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub(crate) struct Nearest {
 impl Nearest {
     /// From the frames of training presses.
     pub(crate) fn of(frames: &Frames, grid: &SurfaceGrid) -> Self {
-        let contacts: Vec<(&TaughtFrame, [f32; N_TRAITS])> = frames
+        let contacts: Vec<(&TrainingFrame, [f32; N_TRAITS])> = frames
             .frames
             .iter()
             .filter_map(|frame| Some((frame, traits(grid, of_grid(grid, &frame.inputs))?)))
@@ -47,16 +47,16 @@ impl Nearest {
         let mut distances: Vec<f32> = contacts
             .iter()
             .zip(&kept)
-            .filter(|((frame, _), _)| frame.lesson.is_multiple_of(ONE_ASKED_OF) && frame.wrench[2] != 0.0)
+            .filter(|((frame, _), _)| frame.press.is_multiple_of(ONE_ASKED_OF) && frame.wrench[2] != 0.0)
             .map(|((asked, _), traits)| {
                 let others = contacts.iter().zip(&kept);
-                let others = others.filter(|((other, _), _)| other.lesson != asked.lesson);
+                let others = others.filter(|((other, _), _)| other.press != asked.press);
                 nearest(others.map(|(_, kept)| kept), traits)
             })
             .collect();
         distances.sort_by(f32::total_cmp);
-        let last_familiar = (FAMILIAR * distances.len() as f64) as usize;
-        let unit = distances.get(last_familiar).or(distances.last());
+        let last_in_distribution = (IN_DISTRIBUTION * distances.len() as f64) as usize;
+        let unit = distances.get(last_in_distribution).or(distances.last());
         Self {
             unit: unit.map_or(1.0, |unit| unit.max(f32::MIN_POSITIVE)),
             kept: Matrix {

@@ -14,7 +14,7 @@ use crate::draw::{Draw, LARGEST_TILT, deepest_mm, scale, simple, upright};
 /// A kind of out-of-distribution press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Strange {
+pub enum OodKind {
     /// Training shapes, deeper than any training press.
     Deeper,
     /// Balls and rods that are thinner than those of training presses.
@@ -27,7 +27,7 @@ pub enum Strange {
     Crowded,
 }
 
-impl Strange {
+impl OodKind {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Deeper, Self::Thin, Self::Sharp, Self::Tilted, Self::Crowded];
 

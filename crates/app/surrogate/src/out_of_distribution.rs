@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use digitac::area_under_curve;
 use serde::{Deserialize, Serialize};
-use twintac_fast::{Body, FastGel, FastReader, GroupErrors, Lesson};
+use twintac_fast::{Body, FastGel, FastReader, FemPress, GroupErrors};
+use twintac_fem_presses::OodKind;
 use twintac_shape::{ShapeError, Surfaces};
-use twintac_teach::Strange;
 use twintac_work::WorkError;
 
 use crate::presses::{PressKind, Solved};
@@ -14,12 +14,13 @@ use crate::presses::{PressKind, Solved};
 /// How well out-of-distribution (OOD) contacts are detected, against held-out presses like those of
 /// training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Told {
+pub struct OodEvaluation {
     /// Fraction of the frames of held-out presses whose OOD score is above 1, %: false positives.
     /// `None` without such frames.
-    pub familiar_flagged_percent: Option<f64>,
+    #[serde(alias = "familiar_flagged_percent")]
+    pub in_distribution_flagged_percent: Option<f64>,
     /// Each kind of OOD contact.
-    pub kinds: BTreeMap<String, ToldKind>,
+    pub kinds: BTreeMap<String, OodKindEvaluation>,
     /// Area under the receiver operating characteristic (AUROC) of all kinds together, %: the
     /// probability that an OOD frame has a higher score than a held-out one. `None` without OOD
     /// frames.
@@ -28,7 +29,7 @@ pub struct Told {
 
 /// How well one kind is detected. A field is `None` if no frame is of that kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ToldKind {
+pub struct OodKindEvaluation {
     /// Fraction of the frames whose OOD score is above 1, %.
     pub flagged_percent: Option<f64>,
     /// AUROC against held-out presses, %.
@@ -38,40 +39,45 @@ pub struct ToldKind {
 }
 
 /// Out-of-distribution presses, `n_of_kind` of each kind.
-pub(super) fn strange_presses(
+pub(super) fn ood_presses(
     solved: &Solved<'_>,
     n_of_kind: u64,
-) -> Result<Vec<(Strange, Vec<Lesson>)>, WorkError> {
-    let of_kind = |kind: Strange| Ok((kind, solved.presses(PressKind::Strange(kind), n_of_kind)?));
-    Strange::ALL.into_iter().map(of_kind).collect()
+) -> Result<Vec<(OodKind, Vec<FemPress>)>, WorkError> {
+    let of_kind = |kind: OodKind| {
+        Ok((
+            kind,
+            solved.presses(PressKind::OutOfDistribution(kind), n_of_kind)?,
+        ))
+    };
+    OodKind::ALL.into_iter().map(of_kind).collect()
 }
 
-impl Told {
+impl OodEvaluation {
     /// Evaluates the OOD score on held-out and on OOD presses.
     ///
     /// # Errors
     /// An impossible shape.
     pub(super) fn of(
         gel: &FastGel,
-        familiar: &[Lesson],
-        strange: &[(Strange, Vec<Lesson>)],
+        held_out: &[FemPress],
+        ood: &[(OodKind, Vec<FemPress>)],
     ) -> Result<Self, ShapeError> {
         let mut reader = gel.reader();
-        let known = novelties(&mut reader, familiar)?;
-        let auroc_percent = |strange: &[f64]| area_under_curve(&known, strange).map(|area| 100.0 * area);
+        let known = ood_scores(&mut reader, held_out)?;
+        let auroc_percent = |ood: &[f64]| area_under_curve(&known, ood).map(|area| 100.0 * area);
         let (mut kinds, mut all) = (BTreeMap::new(), Vec::new());
-        for (kind, presses) in strange {
-            let novelties = novelties(&mut reader, presses)?;
-            let told = ToldKind {
-                flagged_percent: flagged(&novelties),
-                auroc_percent: auroc_percent(&novelties),
-                errors: gel.judge(presses, &Surfaces::new())?.overall,
+        for (kind, presses) in ood {
+            let ood_scores = ood_scores(&mut reader, presses)?;
+            let evaluation = OodKindEvaluation {
+                flagged_percent: flagged(&ood_scores),
+                auroc_percent: auroc_percent(&ood_scores),
+                errors: gel.evaluate(presses, &Surfaces::new())?.overall,
             };
-            kinds.insert(kind.name().to_owned(), told);
-            all.extend(novelties);
+            kinds.insert(kind.name().to_owned(), evaluation);
+            all.extend(ood_scores);
         }
         Ok(Self {
-            familiar_flagged_percent: flagged(&known),
+            in_distribution_flagged_percent: flagged(&known),
             kinds,
             auroc_percent: auroc_percent(&all),
         })
@@ -79,7 +85,7 @@ impl Told {
 }
 
 /// The OOD scores of all frames.
-fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, ShapeError> {
+fn ood_scores(reader: &mut FastReader, presses: &[FemPress]) -> Result<Vec<f64>, ShapeError> {
     let mut all = Vec::new();
     for press in presses {
         let body = Body::new(&press.shape, &Surfaces::new())?;
@@ -89,7 +95,7 @@ fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, Sh
     Ok(all)
 }
 
-fn flagged(novelties: &[f64]) -> Option<f64> {
-    let n = novelties.iter().filter(|ood_score| **ood_score > 1.0).count();
-    (!novelties.is_empty()).then(|| 100.0 * n as f64 / novelties.len() as f64)
+fn flagged(ood_scores: &[f64]) -> Option<f64> {
+    let n = ood_scores.iter().filter(|ood_score| **ood_score > 1.0).count();
+    (!ood_scores.is_empty()).then(|| 100.0 * n as f64 / ood_scores.len() as f64)
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use twintac_shape::{Pose, ShapeError, Surfaces};
 
-use crate::{Body, FastGel, Lesson};
+use crate::{Body, FastGel, FemPress};
 
 /// Gaps between gel and shape at which all pressures should be zero, mm.
 const GAPS_MM: [f64; 4] = [0.1, 0.25, 0.5, 1.0];
@@ -14,7 +14,7 @@ const LEAST_OF_PRESS: f64 = 0.25;
 
 /// Errors of one frame of a press.
 pub(super) struct FrameErrors<'a> {
-    pub(super) press: &'a Lesson,
+    pub(super) press: &'a FemPress,
     pub(super) gel_from_indenter: Pose,
     pub(super) ood_score: f32,
     /// Signed error of the pressure at the taxel with the largest pressure, as a fraction of the
@@ -38,7 +38,7 @@ pub(super) struct PressErrors<'a> {
 }
 
 impl<'a> PressErrors<'a> {
-    pub(super) fn of(gel: &FastGel, press: &'a Lesson, surfaces: &Surfaces) -> Result<Self, ShapeError> {
+    pub(super) fn of(gel: &FastGel, press: &'a FemPress, surfaces: &Surfaces) -> Result<Self, ShapeError> {
         let body = Body::new(&press.shape, surfaces)?;
         let n_taxels = gel.n_taxels();
         let read = press.frames.iter().flat_map(|frame| &frame.floor_kpa[..n_taxels]);

@@ -5,6 +5,6 @@ mod mismatch;
 mod port;
 mod same;
 
-pub(crate) use gel::TaughtGel;
+pub(crate) use gel::TrainedOn;
 pub use mismatch::FastGelMismatch;
 pub(crate) use port::Port;

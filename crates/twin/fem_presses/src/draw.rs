@@ -8,7 +8,7 @@ use twintac_fast::finest_edge_mm;
 use twintac_sensor::Sensor;
 use twintac_shape::{Part, Pose, Shape, SurfaceFile};
 
-use crate::boulder;
+use crate::random_mesh;
 
 /// Width of the gel for which the sizes below hold, mm: the root of the area of PhysTac's gel.
 const WIDTH_MM: f64 = 25.0;
@@ -62,10 +62,10 @@ pub(crate) struct Slide {
 pub(crate) enum Purpose {
     /// Training: balls, cylinders, boxes, rings and wedges, alone or as a union; a third of them on
     /// coarse meshes.
-    Lesson,
+    Training,
     /// Testing: crosses, triangles and random meshes, which are not trained on, on the finest
     /// meshes; straight down.
-    Exam,
+    Test,
     /// Testing: the same shapes, which slide and rotate after they are down.
     Slide,
 }
@@ -87,8 +87,8 @@ const AT_EDGE: f64 = 0.01;
 /// The purpose of a press with one of the sensor's own indenters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Own {
-    Lesson,
-    Exam,
+    Training,
+    Test,
 }
 
 /// The press of a number with one of the sensor's own indenters, no farther from the ports than the
@@ -96,16 +96,16 @@ pub(crate) enum Own {
 /// spread evenly over this area: a few random locations would leave holes.
 pub(crate) fn own(sensor: &Sensor, own: Own, seed: u64, number: u64) -> Option<Draw> {
     let name = match own {
-        Own::Lesson => "own lesson",
-        Own::Exam => "own exam",
+        Own::Training => "own lesson",
+        Own::Test => "own exam",
     };
     let first = match own {
-        Own::Lesson => {
+        Own::Training => {
             let mut of_all = twintac_random::stream(seed, name);
             DVec2::new(of_all.random(), of_all.random())
         }
         // The first test press is in the middle, however few there are.
-        Own::Exam => DVec2::splat(0.5),
+        Own::Test => DVec2::splat(0.5),
     };
     let random = &mut twintac_random::stream(seed, &format!("{name} {number}"));
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
@@ -183,15 +183,15 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let size_mm = (high - low).truncate();
     let scale = scale(sensor);
-    let is_lesson = purpose == Purpose::Lesson;
-    let shape = match (is_lesson, random.random_range(0..7)) {
+    let is_for_training = purpose == Purpose::Training;
+    let shape = match (is_for_training, random.random_range(0..7)) {
         (false, kind) => unseen(kind, scale, random),
         (true, kind @ 0..5) => simple(kind, scale, random),
         (true, _) => whole(scale, random),
     };
     // Coarse meshes are cheap and allow many presses; fine meshes are accurate.
     let coarseness = match random.random_range(0..3) {
-        _ if !is_lesson => None,
+        _ if !is_for_training => None,
         0 => Some(COARSE),
         _ => Some(FINE),
     };
@@ -294,8 +294,8 @@ fn unseen(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
             height_mm,
             edge_radius_mm,
         },
-        _ => Shape::Stl(SurfaceFile::new(boulder::name(
-            random.random_range(0..boulder::N),
+        _ => Shape::Stl(SurfaceFile::new(random_mesh::name(
+            random.random_range(0..random_mesh::N),
         ))),
     }
 }
@@ -333,7 +333,7 @@ mod tests {
     /// The largest distance of a location on the gel from the nearest training press, mm.
     fn largest_hole_mm(sensor: &Sensor, seed: u64, n: u64) -> f64 {
         let presses: Vec<DVec2> = (0..n)
-            .map(|number| own(sensor, Own::Lesson, seed, number).unwrap().place_mm)
+            .map(|number| own(sensor, Own::Training, seed, number).unwrap().place_mm)
             .collect();
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let (low, size) = (low.truncate(), (high - low).truncate());
@@ -364,7 +364,10 @@ mod tests {
             let hole_mm = largest_hole_mm(&sensor, seed, 100);
             assert!(hole_mm < 3.0, "{hole_mm}");
         }
-        let first = own(&sensor, Own::Exam, 1, 0).unwrap().place_mm;
-        assert!(first.length() < 1e-9, "an exam in the middle, not at {first}");
+        let first = own(&sensor, Own::Test, 1, 0).unwrap().place_mm;
+        assert!(
+            first.length() < 1e-9,
+            "a test press in the middle, not at {first}"
+        );
     }
 }

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec2, DVec3};
-use twintac_fast::{Lesson, LessonFrame};
+use twintac_fast::{FemFrame, FemPress};
 use twintac_sensor::{Sensor, Taxel};
 use twintac_shape::{Pose, Shape};
 use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSettings};
 
-use crate::Strange;
-use crate::boulder::exam_surfaces;
+use crate::OodKind;
 use crate::draw::{Draw, Own, Purpose, Slide, draw, edges_per_height, own, upright};
+use crate::random_mesh::test_surfaces;
 
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
@@ -23,7 +23,7 @@ const MAX_NODES: usize = 60_000;
 
 /// Why a press could not be made.
 #[derive(Debug, thiserror::Error)]
-pub enum TeachError {
+pub enum FemPressError {
     /// The gel could not be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
@@ -40,23 +40,23 @@ pub enum TeachError {
 
 /// Makes random presses of one sensor's gel.
 #[derive(Clone, Debug)]
-pub struct Teacher {
+pub struct FemPresses {
     sensor: Arc<Sensor>,
     /// The locations at which the pressure is evaluated, as ports.
     places: Vec<Taxel>,
 }
 
-impl Teacher {
+impl FemPresses {
     /// Evaluates the pressure at these locations of the gel's plane, mm: over a disc with the
     /// radius and height of the port of the taxel at that location, or of the first taxel's port
     /// where no taxel is. `[n_places]`
     ///
     /// # Errors
     /// None that is known.
-    pub fn new(sensor: &Sensor, places_mm: &[DVec2]) -> Result<Self, TeachError> {
+    pub fn new(sensor: &Sensor, places_mm: &[DVec2]) -> Result<Self, FemPressError> {
         // Test presses use surfaces that the sensor does not have.
         let mut sensor = sensor.clone();
-        sensor.surfaces.extend(exam_surfaces()?);
+        sensor.surfaces.extend(test_surfaces()?);
         let places = places_mm.iter().map(|at| {
             let mut taxels = sensor.taxels.iter();
             let own = taxels.find(|taxel| taxel.position_mm.truncate() == *at);
@@ -77,9 +77,9 @@ impl Teacher {
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
-    pub fn lesson(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+    pub fn training_press(&self, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
         let random = &mut twintac_random::stream(seed, &format!("lesson {number}"));
-        self.press(&draw(&self.sensor, Purpose::Lesson, random))
+        self.press(&draw(&self.sensor, Purpose::Training, random))
     }
 
     /// A training press with one of the sensor's own indenters, upright and no farther from the
@@ -88,22 +88,22 @@ impl Teacher {
     ///
     /// # Errors
     /// A sensor that cannot be meshed, or has no indenters.
-    pub fn own_lesson(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
-        self.own(Own::Lesson, seed, number)
+    pub fn own_training_press(&self, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
+        self.own(Own::Training, seed, number)
     }
 
     /// The same as a test press.
     ///
     /// # Errors
-    /// Those of [`Self::own_lesson`].
-    pub fn own_exam(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
-        self.own(Own::Exam, seed, number)
+    /// Those of [`Self::own_training_press`].
+    pub fn own_test_press(&self, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
+        self.own(Own::Test, seed, number)
     }
 
-    fn own(&self, of: Own, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+    fn own(&self, of: Own, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
         match own(&self.sensor, of, seed, number) {
             Some(drawn) => self.press(&drawn),
-            None => Err(TeachError::NoIndenter),
+            None => Err(FemPressError::NoIndenter),
         }
     }
 
@@ -111,9 +111,9 @@ impl Teacher {
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
-    pub fn exam(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+    pub fn test_press(&self, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
         let random = &mut twintac_random::stream(seed, &format!("exam {number}"));
-        self.press(&draw(&self.sensor, Purpose::Exam, random))
+        self.press(&draw(&self.sensor, Purpose::Test, random))
     }
 
     /// The sliding test press of a number: the shape of a test press goes down, then sideways, and
@@ -123,16 +123,16 @@ impl Teacher {
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
-    pub fn slide(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+    pub fn slide(&self, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
         let random = &mut twintac_random::stream(seed, &format!("slide {number}"));
         let drawn = draw(&self.sensor, Purpose::Slide, random);
-        let mut lesson = self.press(&drawn)?;
+        let mut press = self.press(&drawn)?;
         let Some(slide) = &drawn.slide else {
-            return Ok(lesson);
+            return Ok(press);
         };
-        let down = lesson.frames.last().map(|down| down.gel_from_indenter);
-        let Some(down) = down.filter(|_| is_whole(&lesson)) else {
-            return Ok(lesson);
+        let down = press.frames.last().map(|down| down.gel_from_indenter);
+        let Some(down) = down.filter(|_| is_whole(&press)) else {
+            return Ok(press);
         };
         for pose in on_the_way(down, slide) {
             let Some(touch) = self.touch(&drawn.shape, &pose)? else {
@@ -145,10 +145,10 @@ impl Teacher {
                 ..drawn.clone()
             })?;
             if is_whole(&there) {
-                lesson.frames.extend(there.frames.into_iter().last());
+                press.frames.extend(there.frames.into_iter().last());
             }
         }
-        Ok(lesson)
+        Ok(press)
     }
 
     /// A press of an upright shape with given parameters: location, mm, rotation about the
@@ -162,7 +162,7 @@ impl Teacher {
         place_mm: DVec2,
         yaw_rad: f64,
         depth_mm: f64,
-    ) -> Result<Lesson, TeachError> {
+    ) -> Result<FemPress, FemPressError> {
         self.press(&upright(&self.sensor, shape, place_mm, yaw_rad, depth_mm))
     }
 
@@ -171,10 +171,10 @@ impl Teacher {
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
-    pub fn strange(&self, strange: Strange, seed: u64, number: u64) -> Result<Lesson, TeachError> {
-        let name = format!("strange {} {number}", strange.name());
+    pub fn ood_press(&self, kind: OodKind, seed: u64, number: u64) -> Result<FemPress, FemPressError> {
+        let name = format!("strange {} {number}", kind.name());
         let random = &mut twintac_random::stream(seed, &name);
-        let (drawn, from_mm) = strange.draw(&self.sensor, random);
+        let (drawn, from_mm) = kind.draw(&self.sensor, random);
         let mut press = self.press(&drawn)?;
         let n_solved = press.frames.len();
         let from_frame = (from_mm / drawn.depth_mm * f64::from(N_FRAMES)).floor() as usize;
@@ -183,7 +183,7 @@ impl Teacher {
     }
 
     /// Presses straight down, as far as the solver converges.
-    fn press(&self, drawn: &Draw) -> Result<Lesson, TeachError> {
+    fn press(&self, drawn: &Draw) -> Result<FemPress, FemPressError> {
         let settings = SimulateSettings {
             edges_per_height: edges_per_height(&self.sensor, drawn.edge_mm),
             contact_edge_mm: Some(drawn.edge_mm),
@@ -191,7 +191,7 @@ impl Teacher {
             ..SimulateSettings::default()
         };
         let gel = Gel::new(Arc::clone(&self.sensor), settings);
-        let mut lesson = Lesson {
+        let mut press = FemPress {
             shape: drawn.shape.clone(),
             edge_mm: drawn.edge_mm,
             frames: Vec::new(),
@@ -201,7 +201,7 @@ impl Teacher {
             rotation: drawn.rotation,
         };
         let Some(touch) = self.touch(&drawn.shape, &above)? else {
-            return Ok(lesson);
+            return Ok(press);
         };
         let mesh = gel.mesh(&PressPlace {
             indenter: String::new(),
@@ -233,23 +233,23 @@ impl Teacher {
             let force_n = solved.indenter_force_n;
             // No elastic gel pushes less as a press goes deeper: a thin part has slipped between
             // the nodes of the mesh.
-            let before_n = lesson.frames.last().map_or(0.0, |before| before.force_n.z);
+            let before_n = press.frames.last().map_or(0.0, |before| before.force_n.z);
             if force_n.z > before_n {
                 break;
             }
-            lesson.frames.push(LessonFrame {
+            press.frames.push(FemFrame {
                 gel_from_indenter: pose,
                 force_n,
                 torque_n_mm: solved.indenter_torque_n_mm + pose.position_mm.cross(force_n),
                 floor_kpa: ports.iter().map(|port| port.read(&nodal_kpa) as f32).collect(),
             });
         }
-        Ok(lesson)
+        Ok(press)
     }
 
     /// The pose at which a shape first touches the gel on its way down through a pose; `None`
     /// beside the gel.
-    fn touch(&self, shape: &Shape, above: &Pose) -> Result<Option<Pose>, TeachError> {
+    fn touch(&self, shape: &Shape, above: &Pose) -> Result<Option<Pose>, FemPressError> {
         let gel = Gel::new(Arc::clone(&self.sensor), SimulateSettings::default());
         match gel.touch(shape, above) {
             Err(SimulateError::NoTouch { .. }) => Ok(None),
@@ -259,7 +259,7 @@ impl Teacher {
 }
 
 /// Whether a press reached its full depth.
-fn is_whole(press: &Lesson) -> bool {
+fn is_whole(press: &FemPress) -> bool {
     press.frames.len() == N_FRAMES as usize
 }
 

@@ -18,8 +18,8 @@ const ROUNDING_MM: f64 = 1e-6;
 /// the friction of indenters (it was trained without).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct TaughtGel {
-    solid: TaughtSolid,
+pub(crate) struct TrainedOn {
+    solid: SolidTrainedOn,
     material: Model,
     bulk_modulus_kpa: f64,
     shell: Option<Shell>,
@@ -30,7 +30,7 @@ pub(crate) struct TaughtGel {
 /// Shape of a gel; a surface of triangles by its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-enum TaughtSolid {
+enum SolidTrainedOn {
     Described(Solid),
     Surface {
         /// Digest of the vertices and triangles.
@@ -41,13 +41,13 @@ enum TaughtSolid {
     },
 }
 
-impl TaughtGel {
+impl TrainedOn {
     /// The gel of a sensor.
     pub(crate) fn of(sensor: &Sensor) -> Self {
         let (gel, material) = (&sensor.gel, &sensor.gel.material);
         let inclusions = sensor.inclusions.iter();
         Self {
-            solid: TaughtSolid::of(sensor),
+            solid: SolidTrainedOn::of(sensor),
             material: material.model.clone(),
             bulk_modulus_kpa: gel.material.bulk_modulus_kpa,
             shell: sensor.shell.clone(),
@@ -61,12 +61,12 @@ impl TaughtGel {
         let ways = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
         let mut rim_mm = ways.iter().map(|way| center_mm + radius_mm * *way);
         match &self.solid {
-            TaughtSolid::Described(solid) => {
+            SolidTrainedOn::Described(solid) => {
                 let none = Surfaces::new();
                 let base_mm = solid.bounds_mm(&none).0.z;
                 rim_mm.all(|at| solid.contains(at.extend(base_mm), ROUNDING_MM, &none))
             }
-            TaughtSolid::Surface { low_mm, high_mm, .. } => {
+            SolidTrainedOn::Surface { low_mm, high_mm, .. } => {
                 let (low_mm, high_mm) = (low_mm.truncate() - ROUNDING_MM, high_mm.truncate() + ROUNDING_MM);
                 rim_mm.all(|at| at.cmpge(low_mm).all() && at.cmple(high_mm).all())
             }
@@ -137,7 +137,7 @@ impl TaughtGel {
     }
 }
 
-impl TaughtSolid {
+impl SolidTrainedOn {
     fn of(sensor: &Sensor) -> Self {
         let solid = &sensor.gel.solid;
         match solid {
@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     /// PhysTac with a gel of four triangles in the file `gel.stl`.
-    fn of_a_surface(height_mm: f64) -> TaughtGel {
+    fn of_a_surface(height_mm: f64) -> TrainedOn {
         let [a, b, c] = [[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
         let top = DVec3::new(5.0, 5.0, height_mm);
         let triangles = [[a, c, b], [a, b, top], [b, c, top], [c, a, top]];
@@ -225,7 +225,7 @@ mod tests {
         let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
         sensor.surfaces.insert("gel.stl".to_owned(), Arc::new(surface));
         sensor.gel.solid = Solid::Stl(SurfaceFile::new("gel.stl"));
-        TaughtGel::of(&sensor)
+        TrainedOn::of(&sensor)
     }
 
     #[test]

@@ -3,39 +3,39 @@
 
 use rayon::prelude::*;
 use serde::Serialize;
-use twintac_fast::Lesson;
+use twintac_fast::FemPress;
+use twintac_fem_presses::{FemPresses, OodKind};
 use twintac_store::{Keyed, Recipe, Store};
-use twintac_teach::{Strange, Teacher};
 use twintac_work::{At, Progress, Work, WorkError};
 
 /// The purpose of a press.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum PressKind {
-    Lesson,
-    OwnLesson,
-    Exam,
-    OwnExam,
+    Training,
+    OwnTraining,
+    Test,
+    OwnTest,
     Slide,
-    Strange(Strange),
+    OutOfDistribution(OodKind),
 }
 
 impl PressKind {
     /// The name in progress reports and file names.
     fn name(self) -> String {
         match self {
-            Self::Lesson | Self::OwnLesson => "lessons".to_owned(),
-            Self::Exam | Self::OwnExam => "exams".to_owned(),
+            Self::Training | Self::OwnTraining => "training-presses".to_owned(),
+            Self::Test | Self::OwnTest => "test-presses".to_owned(),
             Self::Slide => "slides".to_owned(),
-            Self::Strange(strange) => format!("strange/{}", strange.name()),
+            Self::OutOfDistribution(kind) => format!("out-of-distribution/{}", kind.name()),
         }
     }
 }
 
-/// The presses that a `Teacher` draws, and where they are kept.
+/// The presses that a `FemPresses` draws, and where they are kept.
 pub(super) struct Solved<'a> {
     /// It follows from the sensor's description.
-    pub(super) teacher: &'a Keyed<Teacher>,
+    pub(super) fem_presses: &'a Keyed<FemPresses>,
     pub(super) seed: u64,
     pub(super) store: &'a Store,
     pub(super) progress: &'a dyn Progress,
@@ -44,34 +44,34 @@ pub(super) struct Solved<'a> {
 /// One press: drawn from its seed and number, and solved.
 #[derive(Serialize)]
 struct SolvedPress<'a> {
-    teacher: &'a Keyed<Teacher>,
+    fem_presses: &'a Keyed<FemPresses>,
     kind: PressKind,
     seed: u64,
     number: u64,
 }
 
 impl Recipe for SolvedPress<'_> {
-    type Value = Lesson;
+    type Value = FemPress;
     type Error = WorkError;
 
     fn label(&self) -> String {
         format!("{}-{:06}", self.kind.name(), self.number)
     }
 
-    fn make(&self) -> Result<Lesson, WorkError> {
+    fn make(&self) -> Result<FemPress, WorkError> {
         let Self {
-            teacher,
+            fem_presses,
             seed,
             number,
             ..
         } = *self;
         let press = match self.kind {
-            PressKind::Lesson => teacher.lesson(seed, number),
-            PressKind::OwnLesson => teacher.own_lesson(seed, number),
-            PressKind::Exam => teacher.exam(seed, number),
-            PressKind::OwnExam => teacher.own_exam(seed, number),
-            PressKind::Slide => teacher.slide(seed, number),
-            PressKind::Strange(strange) => teacher.strange(strange, seed, number),
+            PressKind::Training => fem_presses.training_press(seed, number),
+            PressKind::OwnTraining => fem_presses.own_training_press(seed, number),
+            PressKind::Test => fem_presses.test_press(seed, number),
+            PressKind::OwnTest => fem_presses.own_test_press(seed, number),
+            PressKind::Slide => fem_presses.slide(seed, number),
+            PressKind::OutOfDistribution(kind) => fem_presses.ood_press(kind, seed, number),
         };
         press.at(|| format!("{}, press {number}", self.kind.name()))
     }
@@ -79,12 +79,12 @@ impl Recipe for SolvedPress<'_> {
 
 impl Solved<'_> {
     /// The first `n` presses of a kind, from their files or solved now.
-    pub(super) fn presses(&self, kind: PressKind, n: u64) -> Result<Vec<Lesson>, WorkError> {
+    pub(super) fn presses(&self, kind: PressKind, n: u64) -> Result<Vec<FemPress>, WorkError> {
         let work = Work::start(self.progress, &kind.name(), n as usize);
         let presses = (0..n as usize).into_par_iter().with_max_len(1).map(|number| {
             work.go_on()?;
             let kept = self.store.get(&SolvedPress {
-                teacher: self.teacher,
+                fem_presses: self.fem_presses,
                 kind,
                 seed: self.seed,
                 number: number as u64,

@@ -8,7 +8,7 @@ use crate::train::FastResult;
 impl FastResult {
     /// What presses in the test presses, in words.
     #[must_use]
-    pub fn exams_name(&self) -> &'static str {
+    pub fn test_presses_name(&self) -> &'static str {
         match self.own_indenters {
             true => "own indenters, held out",
             false => "held-out shapes",
@@ -32,13 +32,17 @@ impl FastResult {
                 ink,
             }));
         };
-        let like_lessons = "held-out presses";
-        bar(like_lessons.into(), &self.held_out.overall, Ink::Muted);
-        bar(self.exams_name().into(), &self.exams.overall, Ink::Twin);
-        for (shape, errors) in &self.exams.by_shape {
+        let like_training = "held-out presses";
+        bar(like_training.into(), &self.held_out.overall, Ink::Muted);
+        bar(
+            self.test_presses_name().into(),
+            &self.test_presses.overall,
+            Ink::Twin,
+        );
+        for (shape, errors) in &self.test_presses.by_shape {
             bar(shape.clone(), errors, Ink::Twin);
         }
-        for (depth_mm, errors) in &self.exams.by_depth_mm {
+        for (depth_mm, errors) in &self.test_presses.by_depth_mm {
             let name = format!("{depth_mm} to {} mm deep", depth_mm + 1);
             bar(name, errors, Ink::Twin);
         }

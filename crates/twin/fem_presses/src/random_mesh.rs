@@ -19,20 +19,20 @@ const N_BUMPS: usize = 6;
 
 /// The name of a random mesh, used as a shape's path.
 pub(crate) fn name(number: u32) -> String {
-    format!("boulder {number}")
+    format!("random mesh {number}")
 }
 
 /// The random meshes that test presses use, by name.
 ///
 /// # Errors
 /// None that is known.
-pub fn exam_surfaces() -> Result<Surfaces, SurfaceError> {
-    let surface = |number| Ok((name(number), Arc::new(boulder(number)?)));
+pub fn test_surfaces() -> Result<Surfaces, SurfaceError> {
+    let surface = |number| Ok((name(number), Arc::new(random_mesh(number)?)));
     (0..N).map(surface).collect()
 }
 
 /// A ball with bumps.
-fn boulder(number: u32) -> Result<TriangleSurface, SurfaceError> {
+fn random_mesh(number: u32) -> Result<TriangleSurface, SurfaceError> {
     let random = &mut twintac_random::stream(u64::from(number), "boulder");
     let radius_mm = random.random_range(4.0..10.0);
     let bumps: [(DVec3, f64); N_BUMPS] = std::array::from_fn(|_| {
@@ -78,8 +78,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn boulders_are_closed_and_have_many_triangles() {
-        let surfaces = exam_surfaces().unwrap();
+    fn random_meshes_are_closed_and_have_many_triangles() {
+        let surfaces = test_surfaces().unwrap();
         assert_eq!(surfaces.len(), N as usize);
         for surface in surfaces.values() {
             assert_eq!(surface.triangles().len(), 20_000);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use twintac_shape::{Shape, ShapeError, Surfaces};
 
-use crate::{Body, FastGel, Lesson};
+use crate::{Body, FastGel, FemPress};
 use frame::{FrameErrors, PressErrors};
 
 /// Errors of a group of frames, relative to the largest value of each press. A group without frames
@@ -34,7 +34,7 @@ pub struct GroupErrors {
 /// Errors of a surrogate on test presses, which it was not trained on. A group is `None` where it
 /// has no frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Judgement {
+pub struct Evaluation {
     /// All frames.
     pub overall: Option<GroupErrors>,
     /// By kind of shape.
@@ -53,9 +53,10 @@ pub struct Judgement {
     /// any taxel, mean over presses and gaps, % of each press's largest pressure.
     #[serde(default)]
     pub untouched_percent: Option<f64>,
-    /// Frames with an in-distribution contact (`familiar`, an OOD score of at most 1), and the
-    /// others (`new`).
-    pub by_novelty: BTreeMap<String, Option<GroupErrors>>,
+    /// Frames with an OOD score of at most 1 (`in-distribution`), and the others
+    /// (`out-of-distribution`).
+    #[serde(alias = "by_novelty")]
+    pub by_ood_score: BTreeMap<String, Option<GroupErrors>>,
 }
 
 impl FastGel {
@@ -63,7 +64,7 @@ impl FastGel {
     ///
     /// # Errors
     /// A press whose shape cannot exist.
-    pub fn judge(&self, presses: &[Lesson], surfaces: &Surfaces) -> Result<Judgement, ShapeError> {
+    pub fn evaluate(&self, presses: &[FemPress], surfaces: &Surfaces) -> Result<Evaluation, ShapeError> {
         let (mut frames, mut untouched) = (Vec::new(), Vec::new());
         for press in presses {
             let mut errors = PressErrors::of(self, press, surfaces)?;
@@ -84,9 +85,9 @@ impl FastGel {
         let deepest_mm = depths
             .max()
             .unwrap_or(0)
-            .max(self.novelty.coverage.deepest_whole_mm());
-        let familiarity = [("familiar", false), ("new", true)];
-        Ok(Judgement {
+            .max(self.ood_score.coverage.deepest_whole_mm());
+        let kinds = [("in-distribution", false), ("out-of-distribution", true)];
+        Ok(Evaluation {
             overall: group(&|_| true),
             by_shape: shapes
                 .map(|shape| {
@@ -102,16 +103,16 @@ impl FastGel {
             by_place: (0..4).map(quarter).collect(),
             at_edge: group(&|frame| self.is_at_edge(frame)),
             untouched_percent: mean(untouched.iter().copied()).map(|part| 100.0 * part),
-            by_novelty: familiarity
-                .map(|(name, is_new)| (name.to_owned(), group(&|frame| (frame.ood_score > 1.0) == is_new)))
+            by_ood_score: kinds
+                .map(|(name, is_ood)| (name.to_owned(), group(&|frame| (frame.ood_score > 1.0) == is_ood)))
                 .into(),
         })
     }
 
     /// Learns from held-out presses how large the errors are where few training presses pressed.
-    pub(crate) fn calibrate_novelty(
+    pub(crate) fn calibrate_ood_score(
         &mut self,
-        held_out: &[Lesson],
+        held_out: &[FemPress],
         surfaces: &Surfaces,
     ) -> Result<(), ShapeError> {
         let (mut reader, mut seen) = (self.reader(), Vec::new());
@@ -122,7 +123,7 @@ impl FastGel {
                 seen.push((inputs.to_vec(), frame.of_moment as f32));
             }
         }
-        self.novelty.calibrate(self.layout.grid(), &seen);
+        self.ood_score.calibrate(self.layout.grid(), &seen);
         Ok(())
     }
 

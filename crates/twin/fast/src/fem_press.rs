@@ -1,4 +1,4 @@
-//! Training presses: FEM solutions of presses of a gel, from which the surrogate learns.
+//! Presses of a gel, solved by finite elements (FEM). A surrogate is trained and tested on them.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -7,33 +7,33 @@ use twintac_shape::{Pose, Shape};
 
 use crate::surface::SurfaceGrid;
 
-/// One training press: an FEM solution of a press.
+/// The FEM solution of one press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Lesson {
+pub struct FemPress {
     /// The indenter's shape.
     pub shape: Shape,
     /// Length of the mesh's edges under the shape, mm. Coarse meshes give too low pressures, so
     /// this length is an input of the network.
     pub edge_mm: f64,
     /// The gel at increasing depths, in equal steps from first touch on.
-    pub frames: Vec<LessonFrame>,
+    pub frames: Vec<FemFrame>,
 }
 
 /// One frame of a press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LessonFrame {
+pub struct FemFrame {
     /// Pose of the shape in the gel's frame.
     pub gel_from_indenter: Pose,
     /// Force on the gel, N.
     pub force_n: DVec3,
     /// Torque on the gel about the origin of its frame, N mm.
     pub torque_n_mm: DVec3,
-    /// Hydrostatic pressure at each location of [`lesson_places_mm`], averaged over a disc as large
-    /// as a port, kPa. `[n_places]`
+    /// Hydrostatic pressure at each location of [`training_places_mm`], averaged over a disc as
+    /// large as a port, kPa. `[n_places]`
     pub floor_kpa: Vec<f32>,
 }
 
-impl Lesson {
+impl FemPress {
     /// The shape's pose at first touch, extrapolated: frames follow each other straight down in
     /// equal steps. `None` for a press of fewer than two frames.
     pub(crate) fn touch(&self) -> Option<Pose> {
@@ -52,7 +52,7 @@ impl Lesson {
 /// mm: the taxels first, then a grid over the whole base if nothing is cast into the gel. With
 /// chips in the gel, the pressure on top of a chip differs from that elsewhere.
 #[must_use]
-pub fn lesson_places_mm(sensor: &Sensor) -> Vec<DVec2> {
+pub fn training_places_mm(sensor: &Sensor) -> Vec<DVec2> {
     let taxels = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
     let mut places_mm: Vec<DVec2> = taxels.collect();
     if sensor.inclusions.is_empty() {

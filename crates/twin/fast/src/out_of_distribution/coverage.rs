@@ -5,11 +5,11 @@ use crate::distance::REACH_MM;
 use crate::surface::SurfaceGrid;
 
 /// Number of presses that a point counts for where no training press pressed.
-const LEAST_LESSONS: f32 = 0.01;
+const LEAST_PRESSES: f32 = 0.01;
 
 /// More training presses at a point make no difference: the remaining error does not come from its
 /// location.
-const MOST_LESSONS: f32 = 100.0;
+const MOST_PRESSES: f32 = 100.0;
 
 /// Factor by which a contact may be deeper than the training presses: where many pressed, next to
 /// none went all the way to the largest depth.
@@ -24,7 +24,7 @@ pub(super) const LEAST_ERROR_OF_ONE: f32 = 0.02;
 pub(crate) struct Coverage {
     /// Number of training presses that pressed each point, mirror images included where they are
     /// trained on. `[n_points]`
-    pub(crate) lessons: Vec<f32>,
+    pub(crate) presses: Vec<f32>,
     /// The largest depth that one of them had there, mm. `[n_points]`
     pub(crate) deepest_mm: Vec<f32>,
     /// 90th percentile of the relative error where one training press pressed. With `n` presses the
@@ -53,18 +53,18 @@ impl Coverage {
         is_symmetric: [bool; 2],
     ) -> Self {
         let n_points = grid.len();
-        let (mut lessons, mut deepest_mm) = (vec![0.0; n_points], vec![0.0f32; n_points]);
+        let (mut presses, mut deepest_mm) = (vec![0.0; n_points], vec![0.0f32; n_points]);
         // The last press that was counted at each point.
         let mut counted = vec![usize::MAX; n_points];
-        for (lesson, inputs) in frames {
+        for (press, inputs) in frames {
             for (point, channels) in inputs.as_chunks::<N_CHANNELS>().0.iter().enumerate() {
                 let depth_mm = depth_mm(grid, channels);
                 if depth_mm <= 0.0 {
                     continue;
                 }
                 deepest_mm[point] = depth_mm.max(deepest_mm[point]);
-                if std::mem::replace(&mut counted[point], lesson) != lesson {
-                    lessons[point] += 1.0;
+                if std::mem::replace(&mut counted[point], press) != press {
+                    presses[point] += 1.0;
                 }
             }
         }
@@ -90,8 +90,8 @@ impl Coverage {
             images
         };
         Self {
-            lessons: (0..n_points)
-                .map(|point| images(point).into_iter().map(|image| lessons[image]).sum())
+            presses: (0..n_points)
+                .map(|point| images(point).into_iter().map(|image| presses[image]).sum())
                 .collect(),
             deepest_mm: (0..n_points)
                 .map(|point| {
@@ -128,7 +128,7 @@ impl Coverage {
                 continue;
             }
             weights += weight;
-            sparsity += weight / self.lessons[point].clamp(LEAST_LESSONS, MOST_LESSONS).sqrt();
+            sparsity += weight / self.presses[point].clamp(LEAST_PRESSES, MOST_PRESSES).sqrt();
             depth = depth.max(depth_mm(grid, channels));
             deepest_mm = deepest_mm.max(self.deepest_mm[point]);
         }
@@ -169,17 +169,17 @@ mod tests {
     }
 
     #[test]
-    fn lessons_and_their_mirror_images_cover_places_and_depths() {
+    fn presses_and_their_mirror_images_cover_places_and_depths() {
         let sensor = SensorFile::phystac().unwrap().sensor;
         let layout = Layout::of(&sensor);
         let grid = layout.grid();
         let [n_x, n_y] = grid.n;
-        let lessons = [(0, 1.0), (0, 2.0), (1, 1.5)];
-        let frames: Vec<(usize, Vec<f32>)> = lessons
+        let presses = [(0, 1.0), (0, 2.0), (1, 1.5)];
+        let frames: Vec<(usize, Vec<f32>)> = presses
             .into_iter()
-            .map(|(lesson, depth_mm)| (lesson, pressed(grid, [3, 2], depth_mm)))
+            .map(|(press, depth_mm)| (press, pressed(grid, [3, 2], depth_mm)))
             .collect();
-        let frames = || frames.iter().map(|(lesson, inputs)| (*lesson, &inputs[..]));
+        let frames = || frames.iter().map(|(press, inputs)| (*press, &inputs[..]));
         let coverage = Coverage::of(grid, frames(), [true, false]);
         let covered =
             |at: [usize; 2], depth_mm: f32| coverage.covered(grid, &pressed(grid, at, depth_mm)).unwrap();

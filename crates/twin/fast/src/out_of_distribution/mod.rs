@@ -23,19 +23,19 @@ const SURE: f64 = 0.9;
 
 /// What the score is computed from.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Novelty {
+pub(crate) struct OodScore {
     /// Descriptors of the training contacts, without their locations.
     pub(crate) nearest: Nearest,
     /// Locations and depths of the training presses, whatever shape pressed there.
     pub(crate) coverage: Coverage,
 }
 
-impl Novelty {
+impl OodScore {
     /// From the frames of training presses. `is_symmetric`: whether they are also used mirrored
     /// across x and across y.
     pub(crate) fn of(frames: &Frames, grid: &SurfaceGrid, is_symmetric: [bool; 2]) -> Self {
         let pressed = frames.frames.iter().filter(|frame| frame.wrench[2] != 0.0);
-        let pressed = pressed.map(|frame| (frame.lesson, nearest::of_grid(grid, &frame.inputs)));
+        let pressed = pressed.map(|frame| (frame.press, nearest::of_grid(grid, &frame.inputs)));
         Self {
             nearest: Nearest::of(frames, grid),
             coverage: Coverage::of(grid, pressed, is_symmetric),

@@ -1,26 +1,27 @@
 //! Training presses and test presses for the surrogate of a gel (`twintac-fast`): random presses of
 //! a sensor's gel, solved by finite elements (FEM).
 //!
-//! A [`Teacher`] takes a sensor's description and the locations of the gel's base at which the
-//! pressure is evaluated, mm. It returns one press for each seed and number, as a `Lesson` of
+//! A [`FemPresses`] takes a sensor's description and the locations of the gel's base at which the
+//! pressure is evaluated, mm. It returns one press for each seed and number, as a `FemPress` of
 //! `twintac-fast`: frames with the indenter's pose, force, N, torque, N mm, and the pressure at
-//! each location, kPa. The same seed and number give the same press. All presses are `simulated`.
+//! each location, kPa. The same seed and number give the same press, as in earlier versions, whose
+//! names the random streams still have. All presses are `simulated`.
 //!
-//! - [`Teacher::lesson`]: a training press. [`Teacher::own_lesson`]: one with an indenter of the
-//!   sensor.
-//! - [`Teacher::exam`], [`Teacher::slide`], [`Teacher::own_exam`]: test presses, of shapes that are
-//!   not trained on, sliding, or with an indenter of the sensor.
-//! - [`Teacher::strange`]: an out-of-distribution (OOD) press of a given kind ([`Strange`]), to
+//! - [`FemPresses::training_press`]: a training press. [`FemPresses::own_training_press`]: one with
+//!   an indenter of the sensor.
+//! - [`FemPresses::test_press`], [`FemPresses::slide`], [`FemPresses::own_test_press`]: test
+//!   presses, of shapes that are not trained on, sliding, or with an indenter of the sensor.
+//! - [`FemPresses::ood_press`]: an out-of-distribution (OOD) press of a given kind ([`OodKind`]), to
 //!   test the OOD score.
-//! - [`exam_surfaces`]: the random meshes that test presses use.
+//! - [`test_surfaces`]: the random meshes that test presses use.
 //!
 //! # How it works
 //!
 //! ```text
-//! draw     which shape, where, how deep, on how fine a mesh
-//! strange  the same for OOD presses
-//! boulder  random meshes: closed surfaces with bumps
-//! press    the FEM solution of a press, frame by frame
+//! draw                 which shape, where, how deep, on how fine a mesh
+//! out_of_distribution  the same for OOD presses
+//! random_mesh          random meshes: closed surfaces with bumps
+//! press                the FEM solution of a press, frame by frame
 //! ```
 //!
 //! The pressure is evaluated at locations all over the gel's base, not only at the ports. The
@@ -47,11 +48,11 @@
 //! The crate does not depend on the emulated bench, on recordings or on the twin: a surrogate needs
 //! nothing but the sensor's description.
 
-mod boulder;
 mod draw;
+mod out_of_distribution;
 mod press;
-mod strange;
+mod random_mesh;
 
-pub use boulder::exam_surfaces;
-pub use press::{TeachError, Teacher};
-pub use strange::Strange;
+pub use out_of_distribution::OodKind;
+pub use press::{FemPressError, FemPresses};
+pub use random_mesh::test_surfaces;
