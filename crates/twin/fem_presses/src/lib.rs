@@ -11,8 +11,8 @@
 //!   an indenter of the sensor.
 //! - [`FemPresses::test_press`], [`FemPresses::slide`], [`FemPresses::own_test_press`]: test
 //!   presses, of shapes that are not trained on, sliding, or with an indenter of the sensor.
-//! - [`FemPresses::ood_press`]: an out-of-distribution (OOD) press of a given kind ([`OodKind`]), to
-//!   test the OOD score.
+//! - [`FemPresses::ood_press`]: an out-of-distribution (OOD) press of a given kind ([`OodKind`]),
+//!   to test the OOD score.
 //! - [`test_surfaces`]: the random meshes that test presses use.
 //!
 //! # How it works
