@@ -16,5 +16,15 @@ const ready = () => window.twintac?.state.isThere && window.twintac.state.frame 
 await page.waitForFunction(ready, undefined, { timeout: 120_000 });
 await page.evaluate(() => window.twintac.press.aim({ x_mm: -3, y_mm: 2, depth_mm: 1.6 }));
 await page.waitForFunction(ready, undefined, { timeout: 120_000 });
+// Times are of the machine that draws. Without them, the same page gives the same picture.
+await page.evaluate(() => {
+  const rate = document.getElementById("rate");
+  const nodes = rate.cloneNode();
+  nodes.removeAttribute("id");
+  nodes.textContent = /[\d,]+ nodes$/.exec(rate.textContent)[0];
+  rate.after(nodes);
+  rate.style.display = "none";
+  return new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
+});
 await page.screenshot({ path: resolve(process.argv[2]), fullPage: true });
 await browser.close();
