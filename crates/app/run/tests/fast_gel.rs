@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use twintac_fast::TrainSettings;
 use twintac_run::{Run, RunSettings};
 use twintac_sensor::SensorFile;
-use twintac_surrogate::{FastSettings, train_fast};
+use twintac_surrogate::{FastResult, FastSettings, train_fast};
 use twintac_tables::FAST_GEL;
 use twintac_work::Caller;
 
@@ -45,6 +45,19 @@ fn training_presses_are_kept_and_tables_follow_from_them() {
     );
     let bytes = std::fs::read(folder.join(FAST_GEL)).unwrap();
     assert!(folder.join("evaluation.png").exists());
+
+    // The fields' former names are read as well.
+    let mut former = std::fs::read_to_string(folder.join("evaluation.json")).unwrap();
+    for (name, former_name) in [
+        ("n_trained_on", "n_taught"),
+        ("test_presses", "exams"),
+        ("out_of_distribution", "strange"),
+        ("by_ood_score", "by_novelty"),
+    ] {
+        assert!(former.contains(name), "{name}");
+        former = former.replace(&format!("\"{name}\":"), &format!("\"{former_name}\":"));
+    }
+    assert_eq!(serde_json::from_str::<FastResult>(&former).unwrap(), found);
 
     // A training press that exists is not solved again; a damaged one is.
     let presses = || {

@@ -92,7 +92,7 @@ pub enum WorkError {
     Shape(#[from] twintac_shape::ShapeError),
     /// A training press of the surrogate could not be made.
     #[error(transparent)]
-    Teach(#[from] twintac_fem_presses::FemPressError),
+    FemPress(#[from] twintac_fem_presses::FemPressError),
     /// A surrogate could not be read or written.
     #[error(transparent)]
     Fast(#[from] twintac_fast::FastFileError),
