@@ -32,15 +32,12 @@ const HELD_OUT_LONGER: f64 = 1.2;
 #[serde(default, deny_unknown_fields)]
 pub struct FastSettings {
     /// Training presses.
-    #[serde(alias = "n_lessons")]
     pub n_training_presses: u64,
     /// Test presses, straight down, of shapes that no training press has.
-    #[serde(alias = "n_exams")]
     pub n_test_presses: u64,
     /// Test presses of such shapes that slide and tilt.
     pub n_slides: u64,
     /// Out-of-distribution test presses of each kind.
-    #[serde(alias = "n_strange")]
     pub n_ood: u64,
     /// Whether all presses use the sensor's own indenters, upright and near its ports: for the twin
     /// of a bench.
@@ -123,12 +120,12 @@ pub fn train_fast(
     let slides = solved.presses(PressKind::Slide, n_slides)?;
     let n_ood = if is_own { 0 } else { settings.n_ood };
     let ood = ood_presses(&solved, n_ood)?;
-    let press = if is_own {
+    let training = if is_own {
         PressKind::OwnTraining
     } else {
         PressKind::Training
     };
-    let presses = solved.presses(press, settings.n_training_presses)?;
+    let presses = solved.presses(training, settings.n_training_presses)?;
     let (mut trained_on, mut held_out) = (Vec::new(), Vec::new());
     let edges_mm = presses.iter().map(|press| press.edge_mm);
     let one_held_out_of = match presses.len() < FEW_PRESSES {
