@@ -52,7 +52,12 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
 
 
 def on_page_content(html: str, page: Any, config: Any, files: Any) -> str:
-    """The HTML of a page. On the first one, the picture of the gel becomes the gel at a click."""
+    """The HTML of a page: pictures after the first are loaded when they come near the window.
+
+    On the first page, the picture of the gel becomes the gel at a click.
+    """
+    first, *others = html.split("<img ")
+    html = "<img ".join([first, *others[:1], *(f'loading="lazy" {other}' for other in others[1:])])
     if page.file.src_uri != "index.md" or not PRESSED.exists():
         return html
     start, found = re.subn(r'<p>(<img [^>]*src="browser\.png"[^>]*>)</p>', lambda found: START.replace("PICTURE", found[1]), html)
