@@ -15,7 +15,7 @@ echo "$(basename "$wheel"): $bytes bytes"
 "${pip[@]}" install --force-reinstall --no-deps "$wheel"
 "${pip[@]}" install "$wheel[docs,test]"
 "$python" -m mypy --config-file ../pyproject.toml ../twintac/arrays ../twintac/mujoco ../twintac/simulators ../twintac/widget.py
-"$python" -m mypy --config-file ../pyproject.toml ../examples ../benchmarks ../../docs/hooks.py .
+"$python" -m mypy --config-file ../pyproject.toml ../examples ../benchmarks ../../docs/hooks.py ../../docs/studies.py .
 # Where Stable-Baselines3 or a simulator is not installed; and a class whose base, of untyped ipywidgets, has a metaclass of its own.
 printf '%s\n' 'twintac\.gymnasium\.sb3' 'twintac\.simulators\.(_gels|genesis|isaaclab|maniskill|mjlab|mjx|mujoco_warp|newton)' 'twintac\.simulators\._warp\..*' 'twintac\.widget\.GelWidget' > ../../target/not-as-typed
 "$python" -m mypy.stubtest twintac --mypy-config-file ../pyproject.toml --allowlist ../../target/not-as-typed --ignore-unused-allowlist

@@ -40,7 +40,7 @@ from conftest import DATA, ROOT, run_command
 import twintac
 
 PAGES = [ROOT / "README.md", ROOT / "python/README.md", *sorted(ROOT.joinpath("docs").rglob("*.md"))]
-BESIDE = ("crates", "docs", "variations", "imports", "materials", "protocols", "python", "realities", "rigs", "sensors")
+BESIDE = ("crates", "docs", "variations", "imports", "materials", "protocols", "python", "emulators", "rigs", "sensors")
 BIN = Path(sys.executable).parent
 FILE_NAME = re.compile(r"[\w/-]+\.\w+")
 

@@ -1,4 +1,4 @@
-//! README.md, ARCHITECTURE.md and the pages beside them name files that exist.
+//! Pages name files that exist.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ const FOLDERS: [&str; 13] = [
     "sensors",
     "protocols",
     "imports",
-    "realities",
+    "emulators",
     "rigs",
     "materials",
     "xtask",
@@ -59,17 +59,20 @@ pub fn item(text: &str) -> String {
     lines + &line + "\n"
 }
 
-/// Each path in backquotes in README.md and ARCHITECTURE.md exists, unless it has a placeholder.
+/// Each path in backquotes in a page exists, unless it has a placeholder. Changes may name files of
+/// before.
 pub fn files_named_exist(root: &Path) -> Result<()> {
-    for document in ["README.md", "ARCHITECTURE.md"] {
-        let text = fs::read_to_string(root.join(document)).with_context(|| format!("reading {document}"))?;
+    let documents = documents(root)?;
+    for document in documents.iter().filter(|page| !page.ends_with("CHANGELOG.md")) {
+        let text = fs::read_to_string(document).with_context(|| format!("reading {}", document.display()))?;
         for (number, line) in text.lines().enumerate() {
             for quoted in line.split('`').skip(1).step_by(2) {
                 let is_ours = FOLDERS.contains(&quoted.split('/').next().unwrap_or_default());
-                let is_file = quoted.contains('/') && !quoted.contains(['*', '{', ' ']);
+                let is_file = quoted.contains('/') && !quoted.contains(['*', '{', ' ', '<']);
                 ensure!(
                     !is_ours || !is_file || root.join(quoted).exists(),
-                    "{document}:{}: `{quoted}` does not exist",
+                    "{}:{}: `{quoted}` does not exist",
+                    document.display(),
                     number + 1
                 );
             }

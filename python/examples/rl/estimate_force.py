@@ -9,7 +9,7 @@ and how fast it grows as the robot moves. The robot moves by the missing force o
 network is trained with the true values of the simulation, in the states that it gets into itself
 (DAgger: Ross, Gordon and Bagnell, 2011). Needs PyTorch; `train` takes three to six minutes.
 
-A recording for `test` is made as for second_reality.py. Several recordings, of benches whose `seed`
+A recording for `test` is made as for second_emulator.py. Several recordings, of benches whose `seed`
 differs, are several sensors.
 """
 
@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import torch  # type: ignore[import-not-found, unused-ignore]
-from second_reality import EPISODES_A_PRESS, Bench
+from second_emulator import EPISODES_A_PRESS, Bench
 
 from twintac import Recording, SensorVariation, Tasks
 from twintac.gymnasium.policies import Policy, scripted_policy

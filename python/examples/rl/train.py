@@ -36,7 +36,7 @@ SETTINGS: dict[str, dict[str, Any]] = {
 }
 
 
-def judge(kind: str, policy: Policy) -> npt.NDArray[np.float64]:
+def evaluate(kind: str, policy: Policy) -> npt.NDArray[np.float64]:
     """Returns of episodes that are in no training, on sensors with the default variation; the same
     episodes for every policy.
     """
@@ -76,12 +76,12 @@ class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
         self.returns = np.zeros(N_JUDGED)
         self.started = time.monotonic()
 
-    def judge(self) -> None:
+    def evaluate(self) -> None:
         """Evaluates the policy, and adds a row."""
         assert isinstance(self.model, PPO)
         scale = self.model.get_vec_normalize_env()
         assert scale is not None
-        self.returns = judge(self.kind, trained_policy(self.model, scale))
+        self.returns = evaluate(self.kind, trained_policy(self.model, scale))
         mean, error = mean_and_error(self.returns)
         seconds = time.monotonic() - self.started
         self.rows.append((self.num_timesteps, seconds, mean, error))
@@ -90,7 +90,7 @@ class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
     def _on_rollout_start(self) -> None:
         if self.num_timesteps >= self.next:
             self.next += self.every
-            self.judge()
+            self.evaluate()
 
     def _on_step(self) -> bool:
         return True
@@ -115,7 +115,7 @@ def train(kind: str, seed: int, variation: SensorVariation | None, steps: int | 
     )
     curve = Curve(kind, total // 20)
     model.learn(total, callback=curve)
-    curve.judge()
+    curve.evaluate()
     return model, curve
 
 
@@ -161,13 +161,13 @@ def main() -> None:
     arguments.add_argument("--task", choices=sorted(SETTINGS), required=True)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--steps", type=int, help="environment steps of the training")
-    arguments.add_argument("--perfect", action="store_true", help="train on perfect sensors; it is judged on imperfect ones all the same")
+    arguments.add_argument("--perfect", action="store_true", help="train on perfect sensors; it is evaluated on imperfect ones all the same")
     arguments.add_argument("--out", type=Path, default=Path("runs/rl"))
     given = arguments.parse_args()
     torch.set_num_threads(1)
     kind = given.task
-    script = judge(kind, scripted_policy(kind))
-    others = {"script": mean_and_error(script), "chance": mean_and_error(judge(kind, random_policy(kind)))}
+    script = evaluate(kind, scripted_policy(kind))
+    others = {"script": mean_and_error(script), "chance": mean_and_error(evaluate(kind, random_policy(kind)))}
     for policy, (mean, error) in others.items():
         print(f"{policy}: {mean:.2f} ± {error:.2f} {UNIT[kind]}, simulated", flush=True)
     model, curve = train(kind, given.seed, SensorVariation() if given.perfect else None, given.steps)

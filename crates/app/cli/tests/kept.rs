@@ -78,14 +78,14 @@ fn inputs() -> BTreeMap<&'static str, String> {
         .take(100)
         .map(str::to_owned)
         .collect();
-    let reality = read("realities/default.toml")
+    let emulator = read("emulators/default.toml")
         .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
         .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
     BTreeMap::from([
         ("sensor.toml", sensor),
         ("gel.toml", material.trim().to_owned()),
         ("block.stl", box_stl([5.0, 5.0, 6.0])),
-        ("reality.toml", reality),
+        ("emulator.toml", emulator),
         (
             "settings.toml",
             "[simulate]\nedges_per_height = 2.0\nedges_per_contact_radius = 1.0\ndepth_step_mm = 0.5\n[bench]\nn_places = 2\n[train]\nepochs = 3\n"
@@ -142,7 +142,7 @@ const CHANGES: [(&str, &str, &str, &str); 13] = [
         "edges_per_height = 2.2",
     ),
     ("the training", "settings.toml", "epochs = 3", "epochs = 4"),
-    ("the bench", "reality.toml", "seed = 7", "seed = 8"),
+    ("the bench", "emulator.toml", "seed = 7", "seed = 8"),
     ("the protocol", "protocol.toml", "[0.5, 0.9]", "[0.4, 0.8]"),
     ("the gel's surface", "gel.stl", "", ""),
     ("the model", "first/model", "", ""),
@@ -276,10 +276,10 @@ impl Work {
     }
 }
 
-const RECORD: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --out @run";
+const RECORD: &str = "record --at-once --lab @emulator.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --out @run";
 
 /// Presses that are not used for training.
-const UNSEEN: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --seed 2 --out @second";
+const UNSEEN: &str = "record --at-once --lab @emulator.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --seed 2 --out @second";
 
 const WORKS: [Work; 10] = [
     Work {
@@ -304,7 +304,7 @@ const WORKS: [Work; 10] = [
             "block.stl",
             "sensor.toml",
             "settings.toml",
-            "reality.toml",
+            "emulator.toml",
             "protocol.toml",
         ],
     },
@@ -382,7 +382,7 @@ const WORKS: [Work; 10] = [
     // itself.
     Work {
         commands: &[
-            "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @ball.toml --settings @settings.toml --out @ball",
+            "record --at-once --lab @emulator.toml --sensor @sensor.toml --protocol @ball.toml --settings @settings.toml --out @ball",
             "align --run @ball",
             "cross-validate --run @ball --seeds 1",
         ],
@@ -554,7 +554,7 @@ fn a_model_stands_alone() {
 /// overwritten.
 #[test]
 fn logs_are_of_one_bench_and_sensor() {
-    let wired = "record --lab @reality.toml --sensor @sensor.toml --protocol @one.toml --settings @settings.toml --out @run";
+    let wired = "record --lab @emulator.toml --sensor @sensor.toml --protocol @one.toml --settings @settings.toml --out @run";
     let desk = Desk::new();
     let sensor = fs::read_to_string(desk.path("sensor.toml")).unwrap();
     fs::write(

@@ -65,16 +65,16 @@ fn numpy_reads_what_the_twin_reads(variant: &str) {
         fs::write(folder.path().join(name), text).unwrap();
         folder.path().join(name).to_str().unwrap().to_owned()
     };
-    let reality = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../realities/harder.toml");
-    let coarse = fs::read_to_string(reality)
+    let emulator = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../emulators/harder.toml");
+    let coarse = fs::read_to_string(emulator)
         .unwrap()
         .replace("edges_per_height = 7.0", "edges_per_height = 3.0")
         .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 2.0");
-    let (reality, protocol) = (file("reality.toml", &coarse), file("protocol.toml", PROTOCOL));
+    let (emulator, protocol) = (file("emulator.toml", &coarse), file("protocol.toml", PROTOCOL));
     let settings = file("settings.toml", &SETTINGS.replace("VARIANT", variant));
     let run = folder.path().join("run");
     let run = run.to_str().unwrap();
-    let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];
+    let record = ["record", "--at-once", "--lab", &emulator, "--protocol", &protocol];
     twintac(&[&record[..], &["--settings", &settings, "--out", run]].concat());
     for stage in ["align", "train", "evaluate"] {
         twintac(&[stage, "--run", run]);

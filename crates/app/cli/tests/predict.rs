@@ -82,20 +82,20 @@ impl Files {
             folder: tempfile::tempdir().unwrap(),
         };
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-        let reality = fs::read_to_string(root.join("realities/default.toml")).unwrap();
-        let coarse = reality
+        let emulator = fs::read_to_string(root.join("emulators/default.toml")).unwrap();
+        let coarse = emulator
             .replace("edges_per_height = 7.0", "edges_per_height = 4.0")
             .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 2.0");
-        assert_ne!(coarse, reality);
-        let [reality, protocol, settings] = [
-            ("reality.toml", &*coarse),
+        assert_ne!(coarse, emulator);
+        let [emulator, protocol, settings] = [
+            ("emulator.toml", &*coarse),
             ("protocol.toml", PROTOCOL),
             ("settings.toml", SETTINGS),
         ]
         .map(|(name, text)| files.write(name, text));
         let run = files.folder.path().join("run");
         let run = run.to_str().unwrap();
-        let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];
+        let record = ["record", "--at-once", "--lab", &emulator, "--protocol", &protocol];
         let temperature = files.write("temperature.toml", &temperature());
         let record = [&record[..], &["--temperature", &temperature]].concat();
         done(&[&record[..], &["--settings", &settings, "--out", run]].concat());
@@ -120,7 +120,7 @@ impl Files {
     }
 
     /// A model is not evaluated on presses that it was trained on.
-    fn refuse_what_taught(&self) {
+    fn refuse_training_presses(&self) {
         let (model, run) = (self.model(), self.folder.path().join("run"));
         let presses = run.join("recordings/presses.parquet");
         let output = twintac(&[
@@ -171,7 +171,7 @@ impl Files {
     }
 
     /// Its run is cross-validated for other seeds, each with its own test presses.
-    fn judge_again(&self) {
+    fn evaluate_again(&self) {
         let run = self.folder.path().join("run");
         let output = twintac(&[
             "cross-validate",
@@ -195,10 +195,10 @@ impl Files {
     /// that it was trained on are refused.
     fn adapt(&self) {
         let root = self.folder.path().to_str().unwrap();
-        let [reality, settings] = ["reality.toml", "settings.toml"].map(|name| format!("{root}/{name}"));
+        let [emulator, settings] = ["emulator.toml", "settings.toml"].map(|name| format!("{root}/{name}"));
         let protocol = self.write("three.toml", &PROTOCOL.replace("count = 10", "count = 3"));
         let (run, out) = (format!("{root}/other"), format!("{root}/adapted"));
-        let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];
+        let record = ["record", "--at-once", "--lab", &emulator, "--protocol", &protocol];
         let of_seed = ["--seed", "2", "--settings", &settings, "--out", &run];
         done(&[&record[..], &of_seed].concat());
         let model = format!("{root}/run/model");
@@ -211,7 +211,7 @@ impl Files {
         assert!(output.status.success(), "{said}");
         let found: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(found["provenance"], "emulated");
-        assert_eq!(found["judged_presses"], 1);
+        assert_eq!(found["evaluated_presses"], 1);
         assert_eq!(found["adaptation"]["used"].as_array().unwrap().len(), 2);
         for gain in found["adaptation"]["gain"].as_array().unwrap() {
             assert!(gain["value"].as_f64().unwrap() > 0.0 && gain["uncertainty"].as_f64().unwrap() > 0.0);
@@ -271,7 +271,7 @@ impl Files {
         let first = [
             "provenance",
             "press",
-            "taught",
+            "trained_on",
             "time_s",
             "indenter",
             "x_mm",
@@ -346,9 +346,9 @@ fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
 #[test]
 fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let files = Files::with_twin();
-    files.refuse_what_taught();
+    files.refuse_training_presses();
     files.refuse_another_sensor();
-    files.judge_again();
+    files.evaluate_again();
     files.adapt();
     files.locate();
     let [path, protocol, ball] = [("path.toml", PATH), ("one.toml", ONE_PRESS), ("ball.toml", BALL)]

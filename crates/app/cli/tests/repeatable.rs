@@ -54,12 +54,12 @@ impl Bench {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("settings.toml"), SETTINGS).unwrap();
         fs::write(folder.path().join("protocol.toml"), PROTOCOL).unwrap();
-        let reality = fs::read_to_string(root().join("realities/default.toml")).unwrap();
-        let coarse = reality
+        let emulator = fs::read_to_string(root().join("emulators/default.toml")).unwrap();
+        let coarse = emulator
             .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
             .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
-        assert_ne!(coarse, reality);
-        fs::write(folder.path().join("reality.toml"), coarse).unwrap();
+        assert_ne!(coarse, emulator);
+        fs::write(folder.path().join("emulator.toml"), coarse).unwrap();
         Self { folder, threads }
     }
 
@@ -72,7 +72,7 @@ impl Bench {
         command.args(["--threads", self.threads]).args(stage);
         if stage[0] == "record" {
             for (name, path) in [
-                ("--lab", self.folder.path().join("reality.toml")),
+                ("--lab", self.folder.path().join("emulator.toml")),
                 ("--sensor", root().join("sensors/phystac.toml")),
                 ("--protocol", self.folder.path().join("protocol.toml")),
                 ("--settings", self.folder.path().join("settings.toml")),

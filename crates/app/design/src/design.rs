@@ -57,7 +57,7 @@ pub struct Designs {
 
 impl Designs {
     /// The designs that could be evaluated.
-    pub fn judged(&self) -> impl Iterator<Item = (&Design, &Figures)> {
+    pub fn evaluated(&self) -> impl Iterator<Item = (&Design, &Figures)> {
         self.designs
             .iter()
             .filter_map(|design| Some((design, design.figures()?)))
@@ -67,7 +67,7 @@ impl Designs {
     /// and better in one.
     #[must_use]
     pub fn front(&self, wishes: &Wishes) -> Vec<usize> {
-        let (designs, figures): (Vec<&Design>, Vec<&Figures>) = self.judged().unzip();
+        let (designs, figures): (Vec<&Design>, Vec<&Figures>) = self.evaluated().unzip();
         wishes
             .front(&figures)
             .into_iter()
@@ -79,7 +79,7 @@ impl Designs {
     /// each goal scaled from 0 (best of these designs) to 1 (worst).
     #[must_use]
     pub fn best(&self, wishes: &Wishes) -> Option<usize> {
-        let fit = self.judged().filter(|(_, figures)| wishes.are_met(figures));
+        let fit = self.evaluated().filter(|(_, figures)| wishes.are_met(figures));
         let (designs, figures): (Vec<&Design>, Vec<&Figures>) = fit.unzip();
         wishes.best(&figures).map(|index| designs[index].number)
     }

@@ -10,7 +10,7 @@ pub(crate) fn plot(designs: &Designs, wishes: &Wishes) -> Scatter {
     let goal = |index: usize| wishes.goals.get(index).or(wishes.goals.first()).copied();
     let [x, y, color] = [0, 1, 2].map(|index| goal(index).unwrap_or(Figure::RangeN));
     let (front, best) = (designs.front(wishes), designs.best(wishes));
-    let points = designs.judged().filter_map(|(design, figures)| {
+    let points = designs.evaluated().filter_map(|(design, figures)| {
         Some(ScatterPoint {
             at: [x.of(figures)?, y.of(figures)?],
             value: color.of(figures)?,

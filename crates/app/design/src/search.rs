@@ -65,7 +65,7 @@ pub fn search(
         .map(|described| {
             work.go_on()?;
             let outcome = match described {
-                Ok(file) => judge(file, measure, &store, caller)?,
+                Ok(file) => evaluate(file, measure, &store, caller)?,
                 Err(why) => Outcome::Refused(why.to_string()),
             };
             work.step("");
@@ -90,7 +90,7 @@ pub fn search(
             .collect(),
     };
     if let (None, Some(why)) = (
-        designs.judged().next(),
+        designs.evaluated().next(),
         designs.designs.iter().find_map(Design::refused),
     ) {
         return Err(WorkError::Input(format!(
@@ -111,7 +111,12 @@ pub fn search(
 }
 
 /// The figures of a described sensor, kept under all their inputs.
-fn judge(file: &SensorFile, measure: &Measure, store: &Store, caller: &Caller) -> Result<Outcome, WorkError> {
+fn evaluate(
+    file: &SensorFile,
+    measure: &Measure,
+    store: &Store,
+    caller: &Caller,
+) -> Result<Outcome, WorkError> {
     let settings = SimulateSettings {
         max_nodes: measure.max_nodes,
         ..SimulateSettings::default()

@@ -70,12 +70,12 @@ fn searched(
 }
 
 fn figures(designs: &Designs) -> Vec<Figures> {
-    let judged = |design: &Design| {
+    let evaluated = |design: &Design| {
         *design
             .figures()
             .unwrap_or_else(|| panic!("{:?}", design.refused()))
     };
-    designs.designs.iter().map(judged).collect()
+    designs.designs.iter().map(evaluated).collect()
 }
 
 fn measure() -> Measure {

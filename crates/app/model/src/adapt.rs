@@ -52,7 +52,7 @@ pub struct AdaptedModel {
     /// Gains of the original model; `[n_taxels]`.
     pub learned_gain: Vec<f64>,
     /// Number of test presses: those that were not used to adapt.
-    pub judged_presses: usize,
+    pub evaluated_presses: usize,
     /// Errors on the test presses; `None` if there were none.
     pub twin: Option<TwinFigures>,
     /// Errors of the original twin on the same presses.
@@ -75,12 +75,12 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
     let used = gel.choose(&all, plan.presses, plan.seed)?;
     let adapted = gel.adapt(&used)?;
     let rest: Vec<usize> = all.into_iter().filter(|press| !used.contains(press)).collect();
-    let taught = gel.judge(&adapted, &used)?;
-    let judged = (!rest.is_empty())
-        .then(|| gel.judge(&adapted, &rest))
+    let on_used = gel.evaluate(&adapted, &used)?;
+    let evaluation = (!rest.is_empty())
+        .then(|| gel.evaluate(&adapted, &rest))
         .transpose()?;
     let as_learned = (!rest.is_empty())
-        .then(|| gel.judge_as_learned(&rest))
+        .then(|| gel.evaluate_as_learned(&rest))
         .transpose()?;
     let folder = plan.out.join("model");
     let (sensor, surfaces) = match plan.sensor {
@@ -98,7 +98,7 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
         settings: record.settings.clone(),
         provenance: recording.provenance,
         files: adapted.bench.contact_offset_mm.keys().cloned().collect(),
-        taught_by: used
+        trained_on: used
             .iter()
             .map(|&press| press_checksum(&recording.presses[press]))
             .collect(),
@@ -110,8 +110,8 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
         certainty: None,
         temperature: None,
     };
-    let definition = taught.twin.definition.clone();
-    Model::new(adapted.twin.clone(), origin, taught.twin, judged.as_ref()).save(&folder)?;
+    let definition = on_used.twin.definition.clone();
+    Model::new(adapted.twin.clone(), origin, on_used.twin, evaluation.as_ref()).save(&folder)?;
     let found = AdaptedModel {
         provenance: recording.provenance,
         trained_on: record.provenance,
@@ -125,9 +125,9 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
             .collect(),
         adaptation: adapted.adaptation,
         learned_gain: model.twin.gains().gain.clone(),
-        judged_presses: rest.len(),
-        twin: judged.map(|judged| TwinFigures::new(&judged.twin, &record.taxels)),
-        as_learned: as_learned.map(|judged| Figures::from(&judged.twin.overall)),
+        evaluated_presses: rest.len(),
+        twin: evaluation.map(|evaluation| TwinFigures::new(&evaluation.twin, &record.taxels)),
+        as_learned: as_learned.map(|evaluation| Figures::from(&evaluation.twin.overall)),
         definition,
     };
     write_json(&plan.out.join("adaptation.json"), &found)?;

@@ -119,19 +119,19 @@ impl<'a> NewGel<'a> {
     ///
     /// # Errors
     /// Presses of which no frame is scored.
-    pub fn judge(&self, adapted: &Adapted, scored: &[usize]) -> Result<Evaluation, WorkError> {
-        self.judge_on(&adapted.twin, &adapted.bench, scored)
+    pub fn evaluate(&self, adapted: &Adapted, scored: &[usize]) -> Result<Evaluation, WorkError> {
+        self.evaluate_on(&adapted.twin, &adapted.bench, scored)
     }
 
     /// The errors of the original twin on these presses.
     ///
     /// # Errors
-    /// Those of [`judge`](Self::judge).
-    pub fn judge_as_learned(&self, scored: &[usize]) -> Result<Evaluation, WorkError> {
-        self.judge_on(self.twin, &self.bench, scored)
+    /// Those of [`evaluate`](Self::evaluate).
+    pub fn evaluate_as_learned(&self, scored: &[usize]) -> Result<Evaluation, WorkError> {
+        self.evaluate_on(self.twin, &self.bench, scored)
     }
 
-    fn judge_on(
+    fn evaluate_on(
         &self,
         twin: &Twin,
         bench: &BenchEstimate,
@@ -143,6 +143,6 @@ impl<'a> NewGel<'a> {
             tables: &self.tables,
             left_out: &self.left_out,
         };
-        Ok(pressed.judge(twin, bench, scored)?.0)
+        Ok(pressed.evaluate(twin, bench, scored)?.0)
     }
 }

@@ -38,7 +38,7 @@ pub fn compensate(
 }
 
 /// A recording, compensated like those that a model was trained on.
-pub(crate) fn as_taught<'r>(
+pub(crate) fn as_in_training<'r>(
     recording: &'r Recording,
     record: &ModelRecord,
     progress: &dyn Progress,

@@ -18,7 +18,7 @@ use crate::figures::{BaselineFigures, Figures, TwinFigures, names};
 use crate::gel::gel_of;
 use crate::press_checksum::press_checksum;
 use crate::taxels::left_out;
-use crate::temperature::as_taught;
+use crate::temperature::as_in_training;
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
@@ -67,7 +67,7 @@ pub fn evaluate_elsewhere(
     let gel = gel_of(&model, model_folder)?;
     refuse_other_sensor(recording, gel.sensor())?;
     refuse_known(recording, record)?;
-    let recording = &*as_taught(recording, record, progress)?;
+    let recording = &*as_in_training(recording, record, progress)?;
     let left_out = left_out(gel.sensor());
     let store = DepthTableStore::of(gel.clone(), progress)?;
     let (places, tables) = simulate(&store, recording, &record.bench, progress)?;
@@ -88,8 +88,8 @@ pub fn evaluate_elsewhere(
     let scored: Vec<usize> = (0..recording.presses.len())
         .filter(|index| !spent.contains(index))
         .collect();
-    let (evaluation, repeats) = pressed.judge(&model.twin, &bench, &scored)?;
-    let (uncalibrated, _) = pressed.judge(&model.twin, &record.bench, &scored)?;
+    let (evaluation, repeats) = pressed.evaluate(&model.twin, &bench, &scored)?;
+    let (uncalibrated, _) = pressed.evaluate(&model.twin, &record.bench, &scored)?;
     Ok(UnseenEvaluation {
         provenance: recording.provenance,
         definition: evaluation.twin.definition.clone(),
@@ -136,7 +136,7 @@ pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Resul
     let known: Vec<&Press> = recording
         .presses
         .iter()
-        .filter(|press| record.taught_by.contains(&press_checksum(press)))
+        .filter(|press| record.trained_on.contains(&press_checksum(press)))
         .collect();
     let Some(first) = known.first() else {
         return Ok(());
@@ -191,7 +191,7 @@ impl Pressed<'_> {
     }
 
     /// The errors of some presses, on a bench.
-    pub(crate) fn judge(
+    pub(crate) fn evaluate(
         &self,
         twin: &Twin,
         bench: &BenchEstimate,

@@ -17,7 +17,7 @@ impl Paper {
             "presses",
             &format!("{} presses on the emulated bench", planned.presses.len()),
         )?;
-        run.emulate(&self.effort.reality()?, &planned)?;
+        run.emulate(&self.effort.emulator()?, &planned)?;
         Ok(run)
     }
 

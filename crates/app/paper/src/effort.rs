@@ -5,9 +5,9 @@ use std::path::Path;
 use digitac::{BenchSettings, TrainSettings as TwinTraining};
 use serde::{Deserialize, Serialize};
 use twintac_classify::{Sampling, TrainSettings};
-use twintac_lab::Reality;
+use twintac_lab::EmulatorConfiguration;
 use twintac_run::RunSettings;
-use twintac_run::built_in::{BuiltIn, DEMO_PROTOCOL, PAPER_PROTOCOL, reality};
+use twintac_run::built_in::{BuiltIn, DEMO_PROTOCOL, PAPER_PROTOCOL, emulator};
 use twintac_simulate::SimulateSettings;
 use twintac_work::WorkError;
 
@@ -31,16 +31,16 @@ pub enum Effort {
 
 impl Effort {
     /// The emulator configuration of the bench.
-    pub(super) fn reality(self) -> Result<Reality, WorkError> {
+    pub(super) fn emulator(self) -> Result<EmulatorConfiguration, WorkError> {
         match self {
-            Self::Full => reality(Some(Path::new("harder"))),
-            Self::Quick => self.simple_reality(),
+            Self::Full => emulator(Some(Path::new("harder"))),
+            Self::Quick => self.simple_emulator(),
         }
     }
 
     /// The default emulator configuration, which is easier. The quick trial has a coarse gel.
-    pub(super) fn simple_reality(self) -> Result<Reality, WorkError> {
-        let mut simple = reality(None)?;
+    pub(super) fn simple_emulator(self) -> Result<EmulatorConfiguration, WorkError> {
+        let mut simple = emulator(None)?;
         if self == Self::Quick {
             simple.gel.edges_per_height = COARSE;
             simple.gel.edges_per_contact_radius = COARSE;

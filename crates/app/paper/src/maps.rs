@@ -63,7 +63,7 @@ impl Paper {
         let sensor = &self.sensor.sensor;
         let planned = Planned::parse(MAPS_PROTOCOL.name, MAPS_PROTOCOL.text, sensor, self.seed)?;
         let run = self.run("five-shapes", "five presses on the emulated bench")?;
-        run.emulate(&self.effort.reality()?, &planned)?;
+        run.emulate(&self.effort.emulator()?, &planned)?;
         let felt: Vec<PressPlan> = planned.presses.iter().map(|plan| level.plan(plan)).collect();
         let finished = self.run_stage(&Mapping {
             felt: &felt,

@@ -145,7 +145,7 @@ impl Paper {
             "force-presses",
             &format!("{n_presses} presses on the emulated bench"),
         )?;
-        run.emulate(&self.effort.reality()?, &planned)?;
+        run.emulate(&self.effort.emulator()?, &planned)?;
         let start = described.with_material(&yeoh(described))?;
         let finished = self.run_stage(&Fitting {
             start: &Keyed::of_bytes(start.clone(), start.text.as_bytes()),

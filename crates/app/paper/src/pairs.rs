@@ -30,9 +30,9 @@ impl Stage for Frames<'_> {
         let presses = read_pairs(&self.pairs)?;
         let split = Simulation::read(&self.simulation)?.split;
         let part = |press: usize| {
-            let judges = u8::from(split.test.contains(&press));
+            let is_test = u8::from(split.test.contains(&press));
             let chooses = u8::from(split.validation.contains(&press));
-            2 * judges + chooses
+            2 * is_test + chooses
         };
         let parts: Vec<u8> = (0..presses.len()).map(part).collect();
         let taxels: Vec<String> = self.taxels.iter().copied().cloned().collect();

@@ -164,7 +164,7 @@ impl Recipe for Training<'_> {
         };
         let seed = self.job.seed;
         let classifier = Classifier::train(&train, self.n_classes, self.settings, seed, &mut say)?;
-        Ok(classifier.judge(&test))
+        Ok(classifier.evaluate(&test))
     }
 }
 

@@ -25,7 +25,7 @@ impl Paper {
         let planned = self.shapes(2 * self.effort.real_trials(), self.seed)?;
         let source = format!("{} trials on the emulated bench", planned.presses.len());
         let run = self.run("trials", &source)?;
-        run.emulate(&self.effort.reality()?, &planned)?;
+        run.emulate(&self.effort.emulator()?, &planned)?;
         Ok(run)
     }
 

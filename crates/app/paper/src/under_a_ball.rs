@@ -51,7 +51,7 @@ impl Paper {
         let protocol = CHARACTERIZE_PROTOCOL;
         let planned = Planned::parse(protocol.name, protocol.text, sensor, self.seed)?;
         let run = self.run("under-a-ball", "presses and weights on the emulated bench")?;
-        run.emulate(&self.effort.simple_reality()?, &planned)?;
+        run.emulate(&self.effort.simple_emulator()?, &planned)?;
         let finished = self.run_stage(&Characterizing {
             sensor: &Keyed::of_bytes(self.sensor.clone(), self.sensor.text.as_bytes()),
             recordings: run.recordings()?,

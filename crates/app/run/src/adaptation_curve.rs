@@ -40,10 +40,10 @@ pub struct AdaptationCurve {
     /// Taxels excluded from the headline figure.
     pub taxels_left_out: Vec<String>,
     /// Number of test presses: the run's held-out ones, on which no twin was trained.
-    pub judged_presses: usize,
+    pub evaluated_presses: usize,
     /// Number of presses from which those to adapt with were chosen: the training and validation
     /// presses of the run's own twin.
-    pub teaching_presses: usize,
+    pub training_presses: usize,
     /// Errors of the original twin, without adaptation.
     pub as_learned: Figures,
     /// Errors of the run's own twin, trained on all of its training presses.
@@ -93,11 +93,11 @@ pub fn adaptation_curve(
     let model = Model::load(model_folder)?;
     let (recording, metrics) = (run.recording()?, run.metrics()?);
     let split = Model::load(&run.training()?.file(HELD_OUT))?.record.split;
-    let teachers = [&split.train[..], &split.validation].concat();
-    if let Some(most) = plan.presses.iter().find(|count| **count > teachers.len()) {
+    let training_presses = [&split.train[..], &split.validation].concat();
+    if let Some(most) = plan.presses.iter().find(|count| **count > training_presses.len()) {
         return Err(WorkError::Input(format!(
             "{most} presses to adapt with are more than the {} training presses of the run's own twin; give fewer with --curve",
-            teachers.len()
+            training_presses.len()
         )));
     }
     let gel = NewGel::open(
@@ -107,15 +107,15 @@ pub fn adaptation_curve(
         out,
         run.caller(),
     )?;
-    let as_learned = gel.judge_as_learned(&split.test)?;
+    let as_learned = gel.evaluate_as_learned(&split.test)?;
     let work = Work::start(
         run.progress(),
         "adapting",
         plan.presses.len() * plan.seeds as usize,
     );
     let one = |n_presses: usize, seed: u64| -> Result<SeedOfPoint, WorkError> {
-        let used = gel.choose(&teachers, n_presses, seed)?;
-        let evaluation = gel.judge(&gel.adapt(&used)?, &split.test)?;
+        let used = gel.choose(&training_presses, n_presses, seed)?;
+        let evaluation = gel.evaluate(&gel.adapt(&used)?, &split.test)?;
         work.step("");
         Ok(SeedOfPoint {
             seed,
@@ -151,8 +151,8 @@ pub fn adaptation_curve(
         learned_from: model.record.files.clone(),
         definition: metrics.definition,
         taxels_left_out: names(gel.left_out.clone(), &recording.taxels),
-        judged_presses: split.test.len(),
-        teaching_presses: teachers.len(),
+        evaluated_presses: split.test.len(),
+        training_presses: training_presses.len(),
         as_learned: Figures::from(&as_learned.twin.overall),
         trained_on_all,
         points,
@@ -190,11 +190,11 @@ impl AdaptationCurve {
         let on_all = self.trained_on_all.nearest_in_contact_percent;
         let best = |point: &AdaptationPoint| of_seeds(point).into_iter().reduce(f64::min);
         let worst = |point: &AdaptationPoint| of_seeds(point).into_iter().reduce(f64::max);
-        let trained = format!("trained on all {} presses", self.teaching_presses);
+        let trained = format!("trained on all {} presses", self.training_presses);
         Panels {
             title: format!(
                 "A twin adapted to {}, {} data; {} test presses",
-                self.sensor, self.provenance, self.judged_presses
+                self.sensor, self.provenance, self.evaluated_presses
             ),
             x_label: "presses to adapt with".to_owned(),
             panels: vec![Panel {

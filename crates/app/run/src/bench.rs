@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use twintac_emulate::ScheduledFault;
-use twintac_lab::Reality;
+use twintac_lab::EmulatorConfiguration;
 use twintac_press::{Mounting, PressSettings, RunSummary};
 use twintac_protocol::PressPlan;
 use twintac_sensor::SensorFile;
@@ -22,11 +22,11 @@ use crate::run::{LOGS, SENSOR, keyed};
 pub fn check_logs(
     folder: &Path,
     sensor: &SensorFile,
-    reality: Option<&Reality>,
+    emulator: Option<&EmulatorConfiguration>,
     settings: &PressSettings,
 ) -> Result<(), WorkError> {
     let sensor = keyed(sensor.kept_as(&folder.join(SENSOR))?);
-    twintac_station::check_logs(&folder.join(LOGS), &sensor, reality, settings)
+    twintac_station::check_logs(&folder.join(LOGS), &sensor, emulator, settings)
 }
 
 impl Run {
@@ -37,13 +37,13 @@ impl Run {
     /// A location at which the gel cannot be pressed; a sensor that is not read over a bus.
     pub fn emulated_bench(
         &self,
-        reality: &Reality,
+        emulator: &EmulatorConfiguration,
         plans: &[PressPlan],
         settings: &PressSettings,
         faults: Vec<ScheduledFault>,
     ) -> Result<OpenBench, WorkError> {
-        let tables = self.live_tables(reality, plans)?;
-        OpenBench::emulate(&self.sensor().sensor, reality, &tables, settings, faults)
+        let tables = self.live_tables(emulator, plans)?;
+        OpenBench::emulate(&self.sensor().sensor, emulator, &tables, settings, faults)
     }
 
     /// Carries out the presses that are not done yet on a bench, and makes the run's recordings of

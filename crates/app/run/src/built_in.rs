@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use twintac_lab::Reality;
+use twintac_lab::EmulatorConfiguration;
 use twintac_work::{WorkError, read_text};
 
 /// A file that people can copy and edit, as it was when this crate was compiled.
@@ -51,20 +51,20 @@ pub const CHARACTERIZE_PROTOCOL: BuiltIn = BuiltIn {
 };
 
 /// The default emulator configuration.
-pub(crate) const REALITY: BuiltIn = BuiltIn {
-    name: "realities/default.toml",
+pub(crate) const EMULATOR: BuiltIn = BuiltIn {
+    name: "emulators/default.toml",
     text: include_str!("../built_in/default.toml"),
 };
 
 /// The built-in emulator configurations, found by the names of their files.
-const REALITIES: [BuiltIn; 3] = [
-    REALITY,
+const EMULATORS: [BuiltIn; 3] = [
+    EMULATOR,
     BuiltIn {
-        name: "realities/harder.toml",
+        name: "emulators/harder.toml",
         text: include_str!("../built_in/harder.toml"),
     },
     BuiltIn {
-        name: "realities/thicker.toml",
+        name: "emulators/thicker.toml",
         text: include_str!("../built_in/thicker.toml"),
     },
 ];
@@ -89,19 +89,19 @@ impl BuiltIn {
 }
 
 /// The emulator configuration by the name of a built-in one, such as `harder`, or from a file. The
-/// default is [`REALITY`].
+/// default is [`EMULATOR`].
 ///
 /// # Errors
 /// A file that cannot be read or is wrong; a name that is not built in.
-pub fn reality(named: Option<&Path>) -> Result<Reality, WorkError> {
+pub fn emulator(named: Option<&Path>) -> Result<EmulatorConfiguration, WorkError> {
     let stem = |built_in: &BuiltIn| Path::new(built_in.name).file_stem().map(Path::new);
-    let known = REALITIES
+    let known = EMULATORS
         .into_iter()
         .find(|built_in| named.is_none_or(|name| stem(built_in) == Some(name)));
     let (name, text) = match (known, named) {
         (Some(built_in), _) => (built_in.name.to_owned(), built_in.text.to_owned()),
         (None, Some(file)) if file.extension().is_none() && !file.exists() => {
-            let names: Vec<String> = REALITIES
+            let names: Vec<String> = EMULATORS
                 .iter()
                 .filter_map(|built_in| Some(stem(built_in)?.display().to_string()))
                 .collect();
@@ -111,9 +111,9 @@ pub fn reality(named: Option<&Path>) -> Result<Reality, WorkError> {
                 names.join(", ")
             )));
         }
-        (None, _) => REALITY.unless(named)?,
+        (None, _) => EMULATOR.unless(named)?,
     };
-    Ok(Reality::parse(&name, &text)?)
+    Ok(EmulatorConfiguration::parse(&name, &text)?)
 }
 
 #[cfg(test)]
@@ -134,25 +134,25 @@ mod tests {
             CHARACTERIZE_PROTOCOL,
             LAB_RIG,
         ];
-        for built_in in REALITIES.into_iter().chain(others) {
+        for built_in in EMULATORS.into_iter().chain(others) {
             let edited = std::fs::read_to_string(root.join(built_in.name)).unwrap();
             assert_eq!(built_in.text, edited, "{}", built_in.name);
         }
     }
     #[test]
-    fn a_reality_has_a_name_or_a_file() {
-        let plain = reality(None).unwrap();
-        assert_eq!(reality(Some(Path::new("default"))).unwrap(), plain);
-        let harder = reality(Some(Path::new("harder"))).unwrap();
+    fn an_emulator_has_a_name_or_a_file() {
+        let plain = emulator(None).unwrap();
+        assert_eq!(emulator(Some(Path::new("default"))).unwrap(), plain);
+        let harder = emulator(Some(Path::new("harder"))).unwrap();
         assert!(harder.gel.friction > 0.0 && harder.mounting.tilt_rad != [0.0; 2]);
-        let thicker = reality(Some(Path::new("thicker"))).unwrap();
+        let thicker = emulator(Some(Path::new("thicker"))).unwrap();
         assert!((thicker.gel.height_ratio - 1.2).abs() < 1e-12);
         assert!((thicker.gel.yeoh_kpa[0] / plain.gel.yeoh_kpa[0] - 1.2).abs() < 1e-12);
-        let error = reality(Some(Path::new("easier"))).unwrap_err().to_string();
+        let error = emulator(Some(Path::new("easier"))).unwrap_err().to_string();
         assert!(
             error.contains("easier") && error.contains("default, harder, thicker"),
             "{error}"
         );
-        assert!(reality(Some(Path::new("nowhere/easier.toml"))).is_err());
+        assert!(emulator(Some(Path::new("nowhere/easier.toml"))).is_err());
     }
 }

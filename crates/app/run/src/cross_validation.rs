@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use digitac::{Bench, Errors, Fold, HeldOut, Judgement, Places, Variant, judge};
+use digitac::{Bench, Errors, Fold, FoldEvaluation, HeldOut, Places, Variant, evaluate_fold};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthTable, DepthTableSource};
@@ -127,7 +127,8 @@ pub struct CertaintySpread {
     /// Percentage of the frames in contact that are flagged as out-of-distribution.
     pub flagged: Option<Spread>,
     /// AUROC of the OOD score, held-out contacts against those of training, %.
-    pub told_apart: Option<Spread>,
+    #[serde(alias = "told_apart")]
+    pub ood_detection: Option<Spread>,
 }
 
 /// The evaluations of one seed.
@@ -136,7 +137,8 @@ pub struct OfSeed {
     /// The seed.
     pub seed: u64,
     /// One for each file, indenter or taxel that was held out, or a single one.
-    pub judgements: Vec<Judgement>,
+    #[serde(alias = "judgements")]
+    pub evaluations: Vec<FoldEvaluation>,
 }
 
 /// One way to hold presses out, over all seeds. Errors are those of the headline figure: nearest
@@ -209,7 +211,7 @@ impl Run {
             .flat_map(|row| row.folds.iter().map(move |fold| (row, fold)))
             .collect();
         let work = Work::start(self.progress(), "evaluating", jobs.len());
-        let judge_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<Judgement, WorkError> {
+        let evaluate_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<FoldEvaluation, WorkError> {
             let bench = Bench {
                 recording: &recording,
                 places: &simulation.places,
@@ -222,21 +224,22 @@ impl Run {
                 seed: *seed,
                 taxels: &row.settings.taxels,
             };
-            let found = judge(&bench, fold).at(|| format!("held out by {}, seed {seed}", row.held_out))?;
+            let found =
+                evaluate_fold(&bench, fold).at(|| format!("held out by {}, seed {seed}", row.held_out))?;
             work.step("");
             Ok(found)
         };
-        let judgements: Vec<Judgement> = jobs
+        let evaluations: Vec<FoldEvaluation> = jobs
             .par_iter()
             .with_max_len(1)
-            .map(judge_one)
+            .map(evaluate_one)
             .collect::<Result<_, _>>()?;
-        let mut judgements = judgements.into_iter();
+        let mut evaluations = evaluations.into_iter();
         let found = CrossValidation {
             sensor: self.record().sensor.clone(),
             provenance: recording.provenance,
             taxels_left_out: names(self.left_out(), &recording.taxels),
-            rows: rows.iter().map(|row| row.gather(&mut judgements)).collect(),
+            rows: rows.iter().map(|row| row.gather(&mut evaluations)).collect(),
         };
         let folder = self.folder().join(FOLDER);
         write_json(&folder.join("result.json"), &found)?;
@@ -311,23 +314,23 @@ fn rows(
 
 impl Row {
     /// Takes the row's results, which come in the order of its folds.
-    fn gather(&self, judgements: &mut impl Iterator<Item = Judgement>) -> CrossValidated {
+    fn gather(&self, evaluations: &mut impl Iterator<Item = FoldEvaluation>) -> CrossValidated {
         let mut seeds: Vec<OfSeed> = Vec::new();
-        for ((seed, _), judgement) in self.folds.iter().zip(judgements) {
+        for ((seed, _), evaluation) in self.folds.iter().zip(evaluations) {
             match seeds.last_mut() {
-                Some(last) if last.seed == *seed => last.judgements.push(judgement),
+                Some(last) if last.seed == *seed => last.evaluations.push(evaluation),
                 _ => seeds.push(OfSeed {
                     seed: *seed,
-                    judgements: vec![judgement],
+                    evaluations: vec![evaluation],
                 }),
             }
         }
-        let spread = |errors: &dyn Fn(&Judgement) -> Option<Errors>| {
-            let of_seed = |of_seed: &OfSeed| headline(of_seed.judgements.iter().filter_map(errors));
+        let spread = |errors: &dyn Fn(&FoldEvaluation) -> Option<Errors>| {
+            let of_seed = |of_seed: &OfSeed| headline(of_seed.evaluations.iter().filter_map(errors));
             let values: Option<Vec<f64>> = seeds.iter().map(of_seed).collect();
             values.and_then(|values| Spread::of(&values))
         };
-        let all = || seeds.iter().flat_map(|of_seed| &of_seed.judgements);
+        let all = || seeds.iter().flat_map(|of_seed| &of_seed.evaluations);
         let variants: BTreeSet<Variant> = all().flat_map(|j| j.variants.keys().copied()).collect();
         let n_frames: usize = all().map(|j| j.n_frames).sum();
         let n_beyond: usize = all().map(|j| j.n_frames_not_simulated).sum();
@@ -349,9 +352,9 @@ impl Row {
 
 /// Intervals and OOD scores of a row: means over the results of a seed, and their spread.
 fn certainty(seeds: &[OfSeed]) -> CertaintySpread {
-    let spread = |value: &dyn Fn(&Judgement) -> Option<f64>| {
+    let spread = |value: &dyn Fn(&FoldEvaluation) -> Option<f64>| {
         let of_seed = |of_seed: &OfSeed| {
-            let values: Vec<f64> = of_seed.judgements.iter().filter_map(value).collect();
+            let values: Vec<f64> = of_seed.evaluations.iter().filter_map(value).collect();
             (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
         };
         let values: Vec<f64> = seeds.iter().filter_map(of_seed).collect();
@@ -362,7 +365,7 @@ fn certainty(seeds: &[OfSeed]) -> CertaintySpread {
         covered_in_contact: spread(&|j| j.certainty?.covered_in_contact_percent),
         width_in_contact: spread(&|j| j.certainty?.mean_width_in_contact_percent),
         flagged: spread(&|j| j.certainty?.flagged_percent),
-        told_apart: spread(&|j| Some(j.told_apart?.area_percent)),
+        ood_detection: spread(&|j| Some(j.ood_detection?.area_percent)),
     }
 }
 

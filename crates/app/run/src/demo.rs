@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use digitac::TrainSettings;
-use twintac_lab::Reality;
+use twintac_lab::EmulatorConfiguration;
 use twintac_sensor::SensorFile;
 use twintac_simulate::SimulateSettings;
 use twintac_store::write_file;
 use twintac_work::{Caller, Planned, WorkError};
 
-use crate::built_in::{DEMO_PROTOCOL, REALITY};
+use crate::built_in::{DEMO_PROTOCOL, EMULATOR};
 use crate::{Run, RunSettings};
 
 impl Run {
@@ -20,13 +20,13 @@ impl Run {
     /// The folder cannot be written.
     pub fn demo(folder: &Path, seed: u64, caller: Caller) -> Result<Self, WorkError> {
         let sensor = SensorFile::phystac()?;
-        let reality = Reality::parse(REALITY.name, REALITY.text)?;
+        let emulator = EmulatorConfiguration::parse(EMULATOR.name, EMULATOR.text)?;
         let planned = Planned::parse(DEMO_PROTOCOL.name, DEMO_PROTOCOL.text, &sensor.sensor, seed)?;
         let source = format!("{} presses on the emulated bench", planned.presses.len());
         let run = Self::start(folder, sensor, &source, seed, settings(), caller)?;
         write_file(&folder.join("protocol.toml"), DEMO_PROTOCOL.text.as_bytes())?;
-        write_file(&folder.join("reality.toml"), REALITY.text.as_bytes())?;
-        run.emulate(&reality, &planned)?;
+        write_file(&folder.join("emulator.toml"), EMULATOR.text.as_bytes())?;
+        run.emulate(&emulator, &planned)?;
         Ok(run)
     }
 }

@@ -237,7 +237,7 @@ contact_edge_mm = 0.5
 tip_radii_mm = [2.0, 3.6, 6.5]
 [split]
 block_mm = 0.1
-teaching_places = 8
+training_places = 8
 ";
 
     /// Fields for which zero is allowed: it switches their feature off.
@@ -300,6 +300,13 @@ teaching_places = 8
     fn defaults_are_in_their_ranges() {
         assert_eq!(RunSettings::default().checked(), Ok(()));
         assert_eq!(RunSettings::fine().checked(), Ok(()));
+    }
+
+    #[test]
+    fn former_names_are_read() {
+        let former = parse("[split]\nteaching_places = 8\n").unwrap();
+        assert_eq!(former, parse("[split]\ntraining_places = 8\n").unwrap());
+        assert_ne!(former, RunSettings::default());
     }
 
     #[test]
@@ -368,7 +375,7 @@ teaching_places = 8
     }
 
     #[test]
-    fn what_a_fast_gel_cannot_teach_is_left_out_or_refused() {
+    fn what_cannot_be_trained_on_a_fast_gel_is_left_out_or_refused() {
         let all = without_paper(None).unwrap();
         assert_eq!(all.len(), Variant::ALL.len() - 1);
         assert_eq!(

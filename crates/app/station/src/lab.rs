@@ -8,7 +8,7 @@ use phystac::PhysTac;
 use phystac::recovery::{free_bus, reset_switch};
 use serde::Deserialize;
 use twintac_emulate::{EmulatedBench, EmulatedBenchSettings, LabClock, ScheduledFault, check_faults};
-use twintac_lab::{Lab, LiveTable, Reality};
+use twintac_lab::{EmulatorConfiguration, Lab, LiveTable};
 use twintac_live::emulated_board;
 use twintac_press::PressSettings;
 use twintac_recording::Provenance;
@@ -47,12 +47,12 @@ impl OpenBench {
     /// A sensor that is not read over a bus.
     pub fn emulate(
         sensor: &Arc<Sensor>,
-        reality: &Reality,
+        emulator: &EmulatorConfiguration,
         tables: &[LiveTable],
         settings: &PressSettings,
         faults: Vec<ScheduledFault>,
     ) -> Result<Self, WorkError> {
-        let lab = Lab::new(Arc::clone(sensor), reality.clone())?;
+        let lab = Lab::new(Arc::clone(sensor), emulator.clone())?;
         let placement = &settings.placement;
         let (gel, selector) = lab.live(tables, placement.base_from_gel, placement.tool_from_indenter);
 
@@ -62,12 +62,12 @@ impl OpenBench {
             faults,
             ..EmulatedBenchSettings::default()
         };
-        let noise_pa = 1e3 * reality.readout.noise_kpa;
+        let noise_pa = 1e3 * emulator.readout.noise_kpa;
         devices.board.barometer.noise_pa = noise_pa; // the value for 1024 samples
         devices.board.noise_pa = Some(noise_pa);
-        devices.board.seed = reality.seed;
-        devices.force.noise_n = reality.robot.force_noise_n;
-        devices.force.seed = reality.seed;
+        devices.board.seed = emulator.seed;
+        devices.force.noise_n = emulator.robot.force_noise_n;
+        devices.force.seed = emulator.seed;
         devices.robot.first_pose = placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
         let lab_clock = LabClock::real();
         let devices = EmulatedBench::start(lab_clock.clone(), gel, &devices)?;
@@ -98,7 +98,7 @@ impl OpenBench {
             provenance: Provenance::Emulated,
             notes: connected.notes,
             robot: addresses.commands,
-            reality: Some(reality.clone()),
+            emulator: Some(emulator.clone()),
             selector: Some(selector),
             _emulated: Some(devices),
         })

@@ -7,7 +7,7 @@ use std::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use phystac::{Clock, PhysTac, Transfer};
-use twintac_lab::{Reality, Selector};
+use twintac_lab::{EmulatorConfiguration, Selector};
 use twintac_press::{Bench, Streams};
 use twintac_recording::Provenance;
 use twintac_rig::xarm::{Client, ReportPort, ReportReader};
@@ -29,7 +29,7 @@ pub struct OpenBench {
     /// The address of the robot's commands.
     pub(crate) robot: SocketAddr,
     /// The emulator configuration, for an emulated bench.
-    pub(crate) reality: Option<Reality>,
+    pub(crate) emulator: Option<EmulatorConfiguration>,
     /// Changes the indenter of an emulated bench, where no person has to.
     pub(crate) selector: Option<Selector>,
     /// Keeps emulated devices running.

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
-use twintac_lab::{Reality, Selector};
+use twintac_lab::{EmulatorConfiguration, Selector};
 use twintac_log::Description;
 use twintac_press::{Mounting, Operator, Placement, PressSettings, RunSummary, Runner, sensor_limits};
 use twintac_protocol::PressPlan;
@@ -23,7 +23,7 @@ use crate::OpenBench;
 struct LogsOf<'a> {
     sensor: &'a Keyed<SensorFile>,
     /// The emulator configuration; `None` for a real bench.
-    reality: Option<&'a Reality>,
+    emulator: Option<&'a EmulatorConfiguration>,
     placement: &'a Placement,
 }
 
@@ -34,20 +34,20 @@ struct LogsOf<'a> {
 pub fn check_logs(
     logs: &Path,
     sensor: &Keyed<SensorFile>,
-    reality: Option<&Reality>,
+    emulator: Option<&EmulatorConfiguration>,
     settings: &PressSettings,
 ) -> Result<(), WorkError> {
-    Ok(made_from(sensor, reality, settings)?.check(logs)?)
+    Ok(made_from(sensor, emulator, settings)?.check(logs)?)
 }
 
 fn made_from(
     sensor: &Keyed<SensorFile>,
-    reality: Option<&Reality>,
+    emulator: Option<&EmulatorConfiguration>,
     settings: &PressSettings,
 ) -> Result<MadeFrom, WorkError> {
     Ok(MadeFrom::without_program(&LogsOf {
         sensor,
-        reality,
+        emulator,
         placement: &settings.placement,
     })?)
 }
@@ -84,7 +84,7 @@ impl OpenBench {
             progress,
         } = attended;
         let limits = sensor_limits(&sensor.sensor)?;
-        made_from(sensor, self.reality.as_ref(), &settings)?.claim(logs)?;
+        made_from(sensor, self.emulator.as_ref(), &settings)?.claim(logs)?;
         let runner = Runner::new(settings, limits, self.description(sensor))?;
         let mut attendant = Attendant {
             work: Work::start(progress, "pressing", plans.len()),

@@ -58,7 +58,7 @@ impl OpenBench {
             provenance: Provenance::Real,
             notes: connected.notes,
             robot: addresses.commands,
-            reality: None,
+            emulator: None,
             selector: None,
             _emulated: None,
         })

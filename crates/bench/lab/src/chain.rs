@@ -2,12 +2,12 @@
 
 use twintac_random::{RandomStream, normal};
 
-use crate::ReadoutReality;
+use crate::EmulatedReadout;
 use crate::port::Port;
 
 /// The read-out of one press. Its offsets drift from their initial values.
 pub(crate) struct Chain<'a> {
-    readout: &'a ReadoutReality,
+    readout: &'a EmulatedReadout,
     /// The port of each taxel.
     ports: &'a [Port],
     resolution_kpa: f64,
@@ -16,7 +16,7 @@ pub(crate) struct Chain<'a> {
 }
 
 impl<'a> Chain<'a> {
-    pub(crate) fn new(readout: &'a ReadoutReality, ports: &'a [Port], resolution_kpa: f64) -> Self {
+    pub(crate) fn new(readout: &'a EmulatedReadout, ports: &'a [Port], resolution_kpa: f64) -> Self {
         Self {
             readout,
             ports,

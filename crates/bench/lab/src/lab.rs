@@ -18,7 +18,7 @@ use crate::frames::{Frames, Moment};
 use crate::keyframes::keyframes;
 use crate::mounting::Mounting;
 use crate::port::{Port, bubble_kpa};
-use crate::{LabError, Reality};
+use crate::{EmulatorConfiguration, LabError};
 
 /// One cast of a sensor on one emulated bench.
 pub struct Lab {
@@ -27,7 +27,7 @@ pub struct Lab {
     mounting: Mounting,
     /// The port of each taxel.
     ports: Vec<Port>,
-    reality: Reality,
+    emulator: EmulatorConfiguration,
 }
 
 /// Relative height difference up to which a gel counts as made to its drawing.
@@ -43,10 +43,10 @@ impl Lab {
     /// # Errors
     /// [`LabError::Height`]: the gel's shape comes from a file and the configuration asks for
     /// another height.
-    pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Result<Self, LabError> {
-        let mut random = stream(reality.seed, "cast");
+    pub fn new(drawing: Arc<Sensor>, emulator: EmulatorConfiguration) -> Result<Self, LabError> {
+        let mut random = stream(emulator.seed, "cast");
         let mut cast = (*drawing).clone();
-        let ratio = reality.gel.height_ratio;
+        let ratio = emulator.gel.height_ratio;
         if (ratio - 1.0).abs() > SAME_HEIGHT {
             cast.gel.solid = heightened(&cast.gel.solid, ratio).ok_or_else(|| LabError::Height {
                 sensor: drawing.name.clone(),
@@ -54,10 +54,10 @@ impl Lab {
             })?;
         }
         for taxel in &mut cast.taxels {
-            taxel.position_mm.x += normal(&mut random, reality.readout.position_deviation_mm);
-            taxel.position_mm.y += normal(&mut random, reality.readout.position_deviation_mm);
+            taxel.position_mm.x += normal(&mut random, emulator.readout.position_deviation_mm);
+            taxel.position_mm.y += normal(&mut random, emulator.readout.position_deviation_mm);
         }
-        let readout = &reality.readout;
+        let readout = &emulator.readout;
         let mut ports = vec![Port::PERFECT; drawing.taxels.len()];
         for port in &mut ports {
             port.gain = readout.gain_mean * (1.0 + normal(&mut random, readout.gain_deviation));
@@ -69,47 +69,47 @@ impl Lab {
             port.offset_kpa_per_k =
                 readout.offset_kpa_per_k + normal(&mut random, readout.offset_deviation_kpa_per_k);
         }
-        let mut random = stream(reality.seed, "bubbles");
+        let mut random = stream(emulator.seed, "bubbles");
         for (port, taxel) in ports.iter_mut().zip(&drawing.taxels) {
             let volume_mm3 = readout.bubble_mm3 + normal(&mut random, readout.bubble_deviation_mm3);
-            let shear_modulus_kpa = 2.0 * reality.gel.yeoh_kpa[0];
+            let shear_modulus_kpa = 2.0 * emulator.gel.yeoh_kpa[0];
             port.bubble_kpa = bubble_kpa(volume_mm3.max(0.0), taxel.port_radius_mm, shear_modulus_kpa);
         }
         let settings = SimulateSettings {
-            edges_per_height: reality.gel.edges_per_height,
-            edges_per_contact_radius: reality.gel.edges_per_contact_radius,
+            edges_per_height: emulator.gel.edges_per_height,
+            edges_per_contact_radius: emulator.gel.edges_per_contact_radius,
             max_nodes: usize::MAX,
             // The emulator never gives up early.
             solver: SolverSettings {
                 tolerance: 1e-4,
                 max_iterations: 100,
                 min_substep: 1.0 / 16.0,
-                friction: reality.gel.friction,
+                friction: emulator.gel.friction,
                 ..SolverSettings::default()
             },
             ..SimulateSettings::fine()
         };
-        let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));
+        let gel = Gel::new(Arc::new(cast), settings).with_material(material(&emulator));
         let described_mm = drawing.gel.solid.bounds_mm(&drawing.surfaces).1.z;
-        let mounting = Mounting::new(described_mm, gel.height_mm(), reality.mounting.tilt_rad);
+        let mounting = Mounting::new(described_mm, gel.height_mm(), emulator.mounting.tilt_rad);
         Ok(Self {
             drawing,
             gel: gel.with_upwards(mounting.upwards()),
             mounting,
             ports,
-            reality,
+            emulator,
         })
     }
 
     /// Performs one press and records it. The sensor has its temperature at power-up.
     pub fn press(&self, plan: &PressPlan) -> Result<Press, LabError> {
-        let mut random = stream(self.reality.seed, &plan.name);
-        let robot = &self.reality.robot;
+        let mut random = stream(self.emulator.seed, &plan.name);
+        let robot = &self.emulator.robot;
         let place = self.true_place(plan, &mut random)?;
         let deeper_mm = self.depth_offset_mm(&mut random);
 
         let schedule = plan.trajectory(self.drawing.readout.rate_hz);
-        let keyframes = keyframes(&schedule, deeper_mm, self.reality.gel.depth_step_mm);
+        let keyframes = keyframes(&schedule, deeper_mm, self.emulator.gel.depth_step_mm);
         let history = self
             .gel
             .press(&place, &keyframes)
@@ -164,8 +164,8 @@ impl Lab {
         }
     }
 
-    pub(crate) fn reality(&self) -> &Reality {
-        &self.reality
+    pub(crate) fn emulator(&self) -> &EmulatorConfiguration {
+        &self.emulator
     }
 
     /// The gel without relaxation.
@@ -184,7 +184,7 @@ impl Lab {
 
     /// How much deeper the indenter is in a press than the robot assumes, mm.
     pub(crate) fn depth_offset_mm(&self, random: &mut RandomStream) -> f64 {
-        let robot = &self.reality.robot;
+        let robot = &self.emulator.robot;
         robot.depth_offset_mm + normal(random, robot.depth_deviation_mm)
     }
 
@@ -200,7 +200,7 @@ impl Lab {
                 press: plan.name.clone(),
                 indenter: plan.indenter.clone(),
             })?;
-        let robot = &self.reality.robot;
+        let robot = &self.emulator.robot;
         let x_mm = plan.x_mm + normal(random, robot.place_deviation_mm);
         let y_mm = plan.y_mm + normal(random, robot.place_deviation_mm);
         let rotation = self.mounting.turned(plan.rotation);
@@ -242,13 +242,13 @@ impl Lab {
     /// Whether the response of the gel differs between the way in and the way back.
     pub(crate) fn has_friction(&self, indenter: &str) -> bool {
         let described = self.drawing.indenter(indenter).and_then(|known| known.friction);
-        described.unwrap_or(self.reality.gel.friction) > 0.0
+        described.unwrap_or(self.emulator.gel.friction) > 0.0
     }
 
     /// The read-out at the start of a press.
     pub(crate) fn chain(&self) -> Chain<'_> {
         Chain::new(
-            &self.reality.readout,
+            &self.emulator.readout,
             &self.ports,
             self.drawing.readout.resolution_kpa,
         )
@@ -270,8 +270,8 @@ fn heightened(solid: &Solid, ratio: f64) -> Option<Solid> {
     Some(solid)
 }
 
-fn material(reality: &Reality) -> Material {
-    let [c10_kpa, c20_kpa, c30_kpa] = reality.gel.yeoh_kpa;
+fn material(emulator: &EmulatorConfiguration) -> Material {
+    let [c10_kpa, c20_kpa, c30_kpa] = emulator.gel.yeoh_kpa;
     Material {
         model: Yeoh {
             c10_kpa,
@@ -279,8 +279,8 @@ fn material(reality: &Reality) -> Material {
             c30_kpa,
         }
         .into(),
-        bulk_modulus_kpa: reality.gel.bulk_modulus_kpa,
-        prony: reality
+        bulk_modulus_kpa: emulator.gel.bulk_modulus_kpa,
+        prony: emulator
             .gel
             .relaxation
             .iter()

@@ -1,15 +1,15 @@
 //! Emulated bench: an imperfect sensor that an imperfect robot presses, in software.
 //!
 //! The emulator takes the place of a sensor, a robot and a force sensor that are not available. It
-//! has its own physics and its own imperfections, which an emulator configuration (a [`Reality`],
-//! read from a TOML file in `realities/`) lists. It does not know the digital twin that is
+//! has its own physics and its own imperfections, which an [`EmulatorConfiguration`] lists (a TOML
+//! file in `emulators/`). It does not know the digital twin that is
 //! evaluated against it, and differs from it on purpose: a finer mesh, another material law with
 //! viscoelastic relaxation, taxels whose positions and gains differ a little from the drawing,
 //! noise, quantization, clocks with delay and jitter, and a robot with position errors. Recordings
 //! of the emulator have the provenance `emulated`.
 //!
-//! In: the description of a sensor, a [`Reality`], and planned presses or loads. Out: recordings,
-//! with times in s, poses in mm, forces in N and pressures in kPa.
+//! In: the description of a sensor, an [`EmulatorConfiguration`], and planned presses or loads. Out:
+//! recordings, with times in s, poses in mm, forces in N and pressures in kPa.
 //!
 //! - [`Lab::new`] makes one imperfect sensor. Everything random comes from the seed of the
 //!   configuration.
@@ -21,7 +21,7 @@
 //! # How it works
 //!
 //! ```text
-//! reality            the emulator configuration
+//! emulator           the emulator configuration
 //! lab                a sensor that is cast and installed as the configuration says
 //! keyframes, course  a direct press: the gel with its relaxation, solved at chosen moments and
 //!                    interpolated over time between them
@@ -54,7 +54,7 @@
 //! the material of the gel for direct presses, and as a linear memory of the table's values for
 //! presses through the devices.
 //!
-//! **Resolution.** The field `depth_step_mm` of [`GelReality`] is the depth between computed
+//! **Resolution.** The field `depth_step_mm` of [`EmulatedGel`] is the depth between computed
 //! moments. Readings between them are interpolated, which rounds a sharp turn of the motion. At 0.4
 //! mm, as in the default configuration, this changes readings by 0.2 to 1 % of a press's largest
 //! reading on average. It accounts for about 0.15 percentage points of the error of about one
@@ -67,6 +67,7 @@
 
 mod chain;
 mod course;
+mod emulator;
 mod error;
 mod frames;
 mod keyframes;
@@ -75,12 +76,12 @@ mod live;
 mod load;
 mod mounting;
 mod port;
-mod reality;
 mod ways;
 
+pub use emulator::{
+    EmulatedClimate, EmulatedGel, EmulatedInstallation, EmulatedReadout, EmulatedRobot,
+    EmulatorConfiguration, Relaxation,
+};
 pub use error::LabError;
 pub use lab::Lab;
 pub use live::{LiveGel, LiveTable, Selector};
-pub use reality::{
-    ClimateReality, GelReality, MountingReality, ReadoutReality, Reality, Relaxation, RobotReality,
-};

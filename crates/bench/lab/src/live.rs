@@ -21,7 +21,7 @@ use twintac_shape::Pose;
 
 use crate::port::Port;
 use crate::ways::{Ways, way_back};
-use crate::{ClimateReality, Lab, LabError, Relaxation};
+use crate::{EmulatedClimate, Lab, LabError, Relaxation};
 
 /// Depth of the tables beyond the planned depth, mm.
 const SPARE_MM: f64 = 0.5;
@@ -36,7 +36,7 @@ pub struct LiveGel {
     tables: Vec<Curves>,
     selected: Arc<AtomicUsize>,
     relaxation: Vec<Relaxation>,
-    climate: ClimateReality,
+    climate: EmulatedClimate,
     /// The port of each taxel.
     ports: Vec<Port>,
     drift_kpa_per_sqrt_s: f64,
@@ -95,7 +95,7 @@ impl Lab {
     /// # Errors
     /// A location that cannot be pressed, or not to the planned depth.
     pub fn live_table(&self, plan: &PressPlan) -> Result<LiveTable, LabError> {
-        let mut random = stream(self.reality().seed, &plan.name);
+        let mut random = stream(self.emulator().seed, &plan.name);
         let place = self.true_place(plan, &mut random)?;
         let deeper_mm = self.depth_offset_mm(&mut random);
         let place = twintac_simulate::PressPlace {
@@ -152,7 +152,7 @@ impl Lab {
         base_from_gel: Pose,
         tool_from_indenter: Pose,
     ) -> (LiveGel, Selector) {
-        let reality = self.reality();
+        let emulator = self.emulator();
         let selected = Arc::new(AtomicUsize::new(usize::MAX));
         let selector = Selector {
             names: Arc::new(tables.iter().map(|table| table.name.clone()).collect()),
@@ -167,14 +167,14 @@ impl Lab {
                 time_s: 0.0,
                 elastic: [0.0; VALUES],
                 turn_mm: 0.0,
-                fading: vec![[0.0; VALUES]; reality.gel.relaxation.len()],
+                fading: vec![[0.0; VALUES]; emulator.gel.relaxation.len()],
                 walk_kpa: [0.0; MOST_TAXELS],
             },
-            relaxation: reality.gel.relaxation.clone(),
-            climate: reality.climate.clone(),
+            relaxation: emulator.gel.relaxation.clone(),
+            climate: emulator.climate.clone(),
             ports: self.ports().to_vec(),
-            drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
-            random: stream(reality.seed, "live"),
+            drift_kpa_per_sqrt_s: emulator.readout.drift_kpa_per_sqrt_s,
+            random: stream(emulator.seed, "live"),
         };
         (gel, selector)
     }

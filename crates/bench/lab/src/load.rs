@@ -28,7 +28,7 @@ impl Lab {
     /// # Errors
     /// A location that cannot be pressed, or a weight that the gel does not carry.
     pub fn load(&self, plan: &LoadPlan) -> Result<Press, LabError> {
-        let mut random = stream(self.reality().seed, &plan.name);
+        let mut random = stream(self.emulator().seed, &plan.name);
         let as_press = PressPlan {
             name: plan.name.clone(),
             indenter: plan.indenter.clone(),

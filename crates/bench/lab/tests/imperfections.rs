@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::DQuat;
 use twintac_emulate::Physics;
-use twintac_lab::{Lab, Reality};
+use twintac_lab::{EmulatorConfiguration, Lab};
 use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::Press;
 use twintac_rig::TcpPose;
@@ -57,7 +57,7 @@ shape = {{ kind = "sphere", radius_mm = {RADIUS_MM:?} }}
 }
 
 /// A bench without imperfections, with an elastic gel.
-fn perfect() -> Reality {
+fn perfect() -> EmulatorConfiguration {
     let text = "
 summary = 'perfect, elastic'
 seed = 1
@@ -84,13 +84,13 @@ depth_deviation_mm = 0.0
 force_noise_n = 0.0
 force_lag_s = 0.0
 ";
-    Reality::parse("perfect", text).unwrap()
+    EmulatorConfiguration::parse("perfect", text).unwrap()
 }
 
-fn lab(change: impl Fn(&mut Reality)) -> Lab {
-    let mut reality = perfect();
-    change(&mut reality);
-    Lab::new(sensor(), reality).unwrap()
+fn lab(change: impl Fn(&mut EmulatorConfiguration)) -> Lab {
+    let mut emulator = perfect();
+    change(&mut emulator);
+    Lab::new(sensor(), emulator).unwrap()
 }
 
 fn plan(x_mm: f64, y_mm: f64) -> PressPlan {
@@ -107,7 +107,7 @@ fn plan(x_mm: f64, y_mm: f64) -> PressPlan {
     }
 }
 
-fn press(change: impl Fn(&mut Reality), x_mm: f64, y_mm: f64) -> Press {
+fn press(change: impl Fn(&mut EmulatorConfiguration), x_mm: f64, y_mm: f64) -> Press {
     lab(change).press(&plan(x_mm, y_mm)).unwrap()
 }
 
@@ -164,7 +164,7 @@ fn a_higher_gel_is_softer_and_is_touched_where_the_robot_was_set_up() {
 #[test]
 fn a_ball_touches_a_tilted_sensor_where_its_plane_is() {
     let tilt_rad = 0.05;
-    let tilted = |r: &mut Reality| r.mounting.tilt_rad = [0.0, tilt_rad];
+    let tilted = |r: &mut EmulatorConfiguration| r.mounting.tilt_rad = [0.0, tilt_rad];
     let level = press(|_| (), 0.0, 0.0);
     for x_mm in [-4.0, 0.0, 4.0] {
         let found_mm = touch_mm(&press(tilted, x_mm, 0.0));
@@ -303,9 +303,9 @@ fn a_weight_on_a_rough_gel_comes_off_on_another_way() {
 fn a_gel_from_a_file_keeps_its_height() {
     let mut from_file = (*sensor()).clone();
     from_file.gel.solid = Solid::Stl(SurfaceFile::new("gel.stl"));
-    let mut reality = perfect();
-    reality.gel.height_ratio = 1.2;
-    let Err(error) = Lab::new(Arc::new(from_file), reality) else {
+    let mut emulator = perfect();
+    emulator.gel.height_ratio = 1.2;
+    let Err(error) = Lab::new(Arc::new(from_file), emulator) else {
         panic!("a surface cannot be stretched");
     };
     assert!(error.to_string().contains("height_ratio"), "{error}");

@@ -128,7 +128,7 @@ pub fn fit(
         first = problem.evaluate(&start)?;
     }
     let solution = minimize(&problem, start.clone(), first, settings.max_iterations, tell)?;
-    Ok(judge(&problem, &start, &solution))
+    Ok(report(&problem, &start, &solution))
 }
 
 /// Starts each taxel's gain at the value that fits best by itself. Says whether any gain was
@@ -160,7 +160,7 @@ fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool
 }
 
 /// Computes confidence intervals and warnings.
-fn judge(problem: &Problem, start: &[f64], solution: &Solution) -> Fit {
+fn report(problem: &Problem, start: &[f64], solution: &Solution) -> Fit {
     let Solution {
         x,
         evaluation,

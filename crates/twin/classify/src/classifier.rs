@@ -71,7 +71,7 @@ impl Classifier {
             }
         }
         let scale = Scale::of(trials);
-        let school = School {
+        let school = Training {
             trials,
             scale: &scale,
             settings,
@@ -117,7 +117,7 @@ impl Classifier {
 
     /// Classifies trials and counts true against found classes.
     #[must_use]
-    pub fn judge(&self, trials: &[Trial]) -> Confusion {
+    pub fn evaluate(&self, trials: &[Trial]) -> Confusion {
         let mut confusion = Confusion::new(self.n_classes);
         for trial in trials {
             confusion.count(trial.class, self.classify(&trial.series));
@@ -127,14 +127,14 @@ impl Classifier {
 }
 
 /// What the networks are trained with.
-struct School<'a> {
+struct Training<'a> {
     trials: &'a [Trial],
     scale: &'a Scale,
     settings: &'a TrainSettings,
     n_classes: usize,
 }
 
-impl School<'_> {
+impl Training<'_> {
     /// Trains one network.
     fn network(&self, random: &mut RandomStream, progress: &mut dyn FnMut(Progress)) -> Network {
         let (trials, settings) = (self.trials, self.settings);
@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn order_in_time_is_learned() {
         let classifier = train(&trials(120, 1));
-        let found = classifier.judge(&trials(100, 2));
+        let found = classifier.evaluate(&trials(100, 2));
         assert!(found.accuracy_percent().unwrap() > 95.0, "{found:?}");
     }
 

@@ -3,7 +3,7 @@
 //!
 //! In: for each press a [`Series`], made from the readings of all taxels (kPa;
 //! `[n_frames][n_taxels]`), and for training its class, together a [`Trial`]. Out:
-//! [`Classifier::classify`] gives the class of a press, and [`Classifier::judge`] counts true
+//! [`Classifier::classify`] gives the class of a press, and [`Classifier::evaluate`] counts true
 //! against found classes in a [`Confusion`] matrix. [`TrainSettings`] has the size of the network
 //! and its training.
 //!

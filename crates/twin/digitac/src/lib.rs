@@ -62,7 +62,7 @@
 //! nothing else. The test setup is fitted to training and validation presses alike, so the variant
 //! is chosen on presses that the setup calibration has seen.
 //!
-//! [`judge()`] makes the whole fit again for one division of the presses. The command
+//! [`evaluate_fold()`] makes the whole fit again for one division of the presses. The command
 //! `cross-validate` calls it for several seeds and for several ways to hold presses out
 //! ([`HeldOut`]). Divisions share only tables: for a tip of unknown radius, tables are made once
 //! for each of a few radii, and blended. If a file has no training presses, its contact height
@@ -132,9 +132,10 @@ pub use bench_fit::{
     SmoothFactor, Taxels, features, fit_bench, refine_bench,
 };
 pub use certainty::{
-    Certainty, CertaintyScore, Contact, Lessons, PressCertainty, area_under_curve, calibrate, score_certainty,
+    Certainty, CertaintyScore, Contact, PressCertainty, TrainingData, area_under_curve, calibrate,
+    score_certainty,
 };
-pub use cross_validation::{Bench, Judgement, ToldApart, judge};
+pub use cross_validation::{Bench, FoldEvaluation, OodDetection, evaluate_fold};
 pub use error::DigitacError;
 pub use evaluation::{
     Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score,

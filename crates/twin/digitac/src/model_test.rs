@@ -22,7 +22,7 @@ fn a_model_survives_its_folder_and_notices_damage() {
         provenance: made.recording.provenance,
         files: vec!["<img src=x>|.csv".into()],
         temperature: None,
-        taught_by: BTreeSet::new(),
+        trained_on: BTreeSet::new(),
         split: made.split.clone(),
         certainty: None,
     };
@@ -118,13 +118,28 @@ fn saved(folder: &std::path::Path) -> Model {
         provenance: made.recording.provenance,
         files: vec!["file0".into()],
         temperature: None,
-        taught_by: BTreeSet::new(),
+        trained_on: BTreeSet::new(),
         split: made.split.clone(),
         certainty: None,
     };
     let model = Model::new(trained.twin, origin, trained.validation, None);
     model.save(folder).unwrap();
     model
+}
+
+#[test]
+fn presses_of_the_training_set_are_read_by_their_former_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut model = saved(folder.path());
+    model.record.trained_on = BTreeSet::from(["1f".to_owned()]);
+    model.save(folder.path()).unwrap();
+    let path = folder.path().join("twin.json");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let former = text.replace("\"trained_on\"", "\"taught_by\"");
+    assert_ne!(former, text);
+    std::fs::write(&path, former).unwrap();
+    say_checksums(folder.path());
+    assert_eq!(Model::load(folder.path()).unwrap().record, model.record);
 }
 
 #[test]

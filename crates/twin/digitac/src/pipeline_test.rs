@@ -466,7 +466,7 @@ fn presses_to_adapt_with_are_spread_over_files_and_taxels() {
 }
 
 #[test]
-fn what_is_held_out_is_judged_by_what_teaches() {
+fn what_is_held_out_is_evaluated_by_twins_of_the_rest() {
     let mut truth = Truth::new();
     truth.gains.memory = vec![vec![0.2, 0.1]; 4];
     let recording = truth.recording(21);
@@ -507,7 +507,7 @@ fn what_is_held_out_is_judged_by_what_teaches() {
         let folds = Fold::all(&recording, by, (&SplitSettings::default(), 1), &BTreeSet::new()).unwrap();
         assert_eq!(folds.len(), n_folds);
         for fold in &folds {
-            let found = judge(&bench, fold).unwrap();
+            let found = evaluate_fold(&bench, fold).unwrap();
             let percent = found.twin.nearest_in_contact.percent.unwrap();
             assert!(
                 percent > 0.0 && percent < limit,

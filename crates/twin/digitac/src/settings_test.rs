@@ -24,7 +24,7 @@ fn the_ends_of_ranges_are_settings_like_others() {
         ports_mm: crate::synthetic::TAXELS_X_MM.map(|x| [x, 0.0]).to_vec(),
         left_out: BTreeSet::new(),
     };
-    let teachers = &made.split.train;
+    let training_presses = &made.split.train;
     let benches: [fn(&mut BenchSettings); 9] = [
         |settings| settings.contact_offset_limit_mm = 0.0,
         |settings| settings.contact_offset_limit_mm = 5.0,
@@ -48,7 +48,7 @@ fn the_ends_of_ranges_are_settings_like_others() {
             &made.recording,
             &places,
             &tables,
-            teachers,
+            training_presses,
             &nominal,
             &settings,
             &taxels,
@@ -137,7 +137,7 @@ fn settings_that_cannot_be_are_refused_before_anything_is_fitted() {
 }
 
 #[test]
-fn a_variant_that_no_validation_press_in_contact_judges_is_not_chosen() {
+fn a_variant_without_a_validation_press_in_contact_is_not_chosen() {
     let made = make(&Truth::new(), 12);
     let variants = [Variant::Pressure, Variant::PressureMemory];
     let mut trained = train_quietly(&made, &settings(&variants, 1));

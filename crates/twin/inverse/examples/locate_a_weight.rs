@@ -32,10 +32,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("the path of a file of array8")?;
     let points = read(&std::fs::read_to_string(&path)?)?;
     println!(
-        "real; lattice mm, taught, judged, of them not felt, median place error mm, 90 of 100 mm, strongest taxel mm, within two deviations %"
+        "real; lattice mm, trained_on, evaluated, of them not felt, median place error mm, 90 of 100 mm, strongest taxel mm, within two deviations %"
     );
     for every in [4, 6, 8] {
-        judge(&points, every)?;
+        evaluate(&points, every)?;
     }
     Ok(())
 }
@@ -53,19 +53,22 @@ fn read(text: &str) -> Result<Vec<Point>, Box<dyn Error>> {
     Ok(rows.iter().map(point).collect())
 }
 
-fn judge(points: &[Point], every: usize) -> Result<(), Box<dyn Error>> {
-    let is_taught = |point: &Point| point.at.iter().all(|at| at % every == 0);
-    let mut taught: Vec<&Point> = points.iter().filter(|point| is_taught(point)).collect();
-    taught.sort_by_key(|point| [point.at[1], point.at[0]]);
-    let most = |axis: usize| taught.iter().map(|point| point.at[axis]).max().unwrap_or(0);
+fn evaluate(points: &[Point], every: usize) -> Result<(), Box<dyn Error>> {
+    let is_trained_on = |point: &Point| point.at.iter().all(|at| at % every == 0);
+    let mut trained_on: Vec<&Point> = points.iter().filter(|point| is_trained_on(point)).collect();
+    trained_on.sort_by_key(|point| [point.at[1], point.at[0]]);
+    let most = |axis: usize| trained_on.iter().map(|point| point.at[axis]).max().unwrap_or(0);
     let n = [most(0) / every + 1, most(1) / every + 1, 1];
     let step_mm = every as f64 * GRID_MM;
     let table = ReadingTable {
         first_mm: [0.0; 3],
         step_mm: [step_mm, step_mm, 1.0],
         n,
-        readings_kpa: taught.iter().map(|point| point.readings_kpa.clone()).collect(),
-        force_n: vec![0.0; taught.len()],
+        readings_kpa: trained_on
+            .iter()
+            .map(|point| point.readings_kpa.clone())
+            .collect(),
+        force_n: vec![0.0; trained_on.len()],
     };
     let largest_kpa = points
         .iter()
@@ -81,7 +84,7 @@ fn judge(points: &[Point], every: usize) -> Result<(), Box<dyn Error>> {
     let strongest = strongest(points);
     let (mut errors_mm, mut taxel_errors_mm) = (Vec::new(), Vec::new());
     let (mut n_within, mut n_unfelt) = (0, 0);
-    let inside = |point: &&Point| !is_taught(point) && (0..2).all(|axis| point.at[axis] <= most(axis));
+    let inside = |point: &&Point| !is_trained_on(point) && (0..2).all(|axis| point.at[axis] <= most(axis));
     for point in points.iter().filter(inside) {
         if let Some(contact) = inverse.start().update(1.0, &point.readings_kpa)? {
             let error = contact.place_mm - place_mm(point);
@@ -104,7 +107,7 @@ fn judge(points: &[Point], every: usize) -> Result<(), Box<dyn Error>> {
     };
     println!(
         "{step_mm}, {}, {}, {n_unfelt}, {:.3}, {:.3}, {:.3}, {:.1}",
-        taught.len(),
+        trained_on.len(),
         errors_mm.len() + n_unfelt,
         at(&errors_mm, 0.5),
         at(&errors_mm, 0.9),

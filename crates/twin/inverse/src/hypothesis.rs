@@ -153,7 +153,7 @@ impl Hypothesis {
     }
 
     /// Whether it counts: it is alive and not on trial.
-    pub(crate) fn is_judged(&self) -> bool {
+    pub(crate) fn is_evaluated(&self) -> bool {
         self.is_alive && self.on_trial == 0
     }
 

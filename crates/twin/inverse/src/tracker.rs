@@ -243,7 +243,7 @@ impl<M: ContactModel> Tracker<M> {
             if hypothesis.is_alive && (is_turn || is_probable) {
                 let prior = &self.inverse.shapes[number / settings.n_starts].prior;
                 hypothesis.update(&mut self.inverse.model, prior, &frame, &settings);
-                if hypothesis.is_judged() {
+                if hypothesis.is_evaluated() {
                     gain = gain.max(hypothesis.gain);
                 }
             } else {
@@ -253,7 +253,7 @@ impl<M: ContactModel> Tracker<M> {
         for hypothesis in self
             .hypotheses
             .iter_mut()
-            .filter(|hypothesis| hypothesis.is_judged())
+            .filter(|hypothesis| hypothesis.is_evaluated())
         {
             // A hypothesis that was not updated keeps its distance to the best.
             let own = if hypothesis.gain.is_nan() {
@@ -266,7 +266,7 @@ impl<M: ContactModel> Tracker<M> {
         self.n_frames = remembered * self.n_frames + 1.0;
         let most = best_score(&self.hypotheses) - WORSE;
         for (shape, own) in self.hypotheses.chunks_mut(settings.n_starts).enumerate() {
-            judge(own, self.n_frames, most);
+            update_evaluated(own, self.n_frames, most);
             merge(own, &self.inverse.shapes[shape].prior);
         }
     }
@@ -276,7 +276,7 @@ impl<M: ContactModel> Tracker<M> {
         let settings = &self.inverse.settings;
         let best = best_score(&self.hypotheses);
         let weight = |hypothesis: &Hypothesis| {
-            if hypothesis.is_judged() {
+            if hypothesis.is_evaluated() {
                 (hypothesis.score() - best).exp()
             } else {
                 0.0
@@ -301,7 +301,7 @@ impl<M: ContactModel> Tracker<M> {
         let of_shape: f64 = own.iter().map(weight).sum();
         contact.covariance = [[0.0; N]; N];
         let mut force_square = (settings.force_part * told.force_n).powi(2);
-        for hypothesis in own.iter().filter(|hypothesis| hypothesis.is_judged()) {
+        for hypothesis in own.iter().filter(|hypothesis| hypothesis.is_evaluated()) {
             let part = weight(hypothesis) / of_shape;
             let way = prior.way(&told.at, &hypothesis.at);
             for row in 0..N {
@@ -335,18 +335,18 @@ impl<M: ContactModel> Tracker<M> {
 }
 
 fn best_score(hypotheses: &[Hypothesis]) -> f64 {
-    let judged = hypotheses.iter().filter(|hypothesis| hypothesis.is_judged());
-    judged.map(Hypothesis::score).fold(f64::NEG_INFINITY, f64::max)
+    let evaluated = hypotheses.iter().filter(|hypothesis| hypothesis.is_evaluated());
+    evaluated.map(Hypothesis::score).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Ends trials. A hypothesis that fits this frame clearly better than the shape's best counts as if
 /// it had fitted all frames of the contact that well, but it does not become more probable than any
 /// hypothesis that did fit them.
-fn judge(own: &mut [Hypothesis], n_frames: f64, most: f64) {
-    let judged = own
+fn update_evaluated(own: &mut [Hypothesis], n_frames: f64, most: f64) {
+    let evaluated = own
         .iter()
-        .filter(|hypothesis| hypothesis.is_judged() && !hypothesis.gain.is_nan());
-    let best = judged.max_by(|a, b| a.score().total_cmp(&b.score()));
+        .filter(|hypothesis| hypothesis.is_evaluated() && !hypothesis.gain.is_nan());
+    let best = evaluated.max_by(|a, b| a.score().total_cmp(&b.score()));
     let Some((evidence, cost)) = best.map(|best| (best.evidence, best.cost)) else {
         return;
     };
@@ -370,8 +370,8 @@ fn merge(own: &mut [Hypothesis], prior: &Prior) {
             let [a, b] = [&own[first], &own[second]];
             let way = prior.way(&a.at, &b.at);
             let is_same = way.iter().zip(SAME).all(|(way, same)| way.abs() < same);
-            let is_better = !b.is_judged() || a.score() >= b.score();
-            if first != second && a.is_judged() && b.is_alive && is_same && is_better {
+            let is_better = !b.is_evaluated() || a.score() >= b.score();
+            if first != second && a.is_evaluated() && b.is_alive && is_same && is_better {
                 own[second].is_alive = false;
             }
         }

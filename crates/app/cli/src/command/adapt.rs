@@ -110,7 +110,7 @@ fn adapted(found: &AdaptedModel) -> String {
             "nearest in contact {}, all {}, on {} presses that it was not adapted with; before adaptation {}",
             percent(twin.overall.nearest_in_contact_percent),
             percent(twin.overall.all_percent),
-            found.judged_presses,
+            found.evaluated_presses,
             percent(learned.nearest_in_contact_percent).trim_start()
         ));
         lines.push(found.definition.clone());
@@ -123,7 +123,7 @@ fn table(found: &AdaptationCurve) -> String {
     let mut lines = vec![
         format!(
             "{} ({} data), {} held-out presses; nearest taxel, frames in contact",
-            found.sensor, found.provenance, found.judged_presses
+            found.sensor, found.provenance, found.evaluated_presses
         ),
         format!(
             "before adaptation  {}",
@@ -145,7 +145,7 @@ fn table(found: &AdaptationCurve) -> String {
     }));
     lines.push(format!(
         "trained on all {:3} {}",
-        found.teaching_presses,
+        found.training_presses,
         percent(found.trained_on_all.nearest_in_contact_percent)
     ));
     lines.push(found.definition.clone());

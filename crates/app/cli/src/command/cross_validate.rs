@@ -77,8 +77,8 @@ fn sureness(found: &CertaintySpread) -> Vec<String> {
             spread(flagged)
         ));
     }
-    if let Some(told_apart) = &found.told_apart {
-        lines.push(format!("  OOD detection: AUROC {}", spread(told_apart)));
+    if let Some(ood_detection) = &found.ood_detection {
+        lines.push(format!("  OOD detection: AUROC {}", spread(ood_detection)));
     }
     lines
 }

@@ -88,7 +88,7 @@ fn print_front(found: &Designs, wishes: &Wishes, best: Option<usize>) -> Result<
     let names: Vec<&str> = names.chain(wishes.goals.iter().map(|goal| goal.name())).collect();
     print(&format!("{:>8} {}", "design", names.join(" ")))?;
     let shown = found
-        .judged()
+        .evaluated()
         .filter(|(design, _)| front.contains(&design.number) || best == Some(design.number));
     let shown: Vec<(&Design, &Figures)> = shown.collect();
     for (index, (design, figures)) in shown.iter().enumerate() {

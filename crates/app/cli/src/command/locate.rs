@@ -40,7 +40,7 @@ fn table(located: &Located) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 16] = [
         "provenance",
         "press",
-        "taught",
+        "trained_on",
         "time_s",
         "indenter",
         "x_mm",
@@ -68,7 +68,7 @@ fn row(located: &Located, press: &LocatedPress, frame: &LocatedFrame) -> Vec<Str
     vec![
         located.provenance.to_string(),
         press.name.clone(),
-        press.taught.to_string(),
+        press.trained_on.to_string(),
         number(Some(frame.time_s)),
         frame.indenter.clone().unwrap_or_default(),
         axis(frame.place_mm, 0),
@@ -115,7 +115,7 @@ fn summary(located: &Located) -> String {
         "{}, {:.3} ms a frame\n{}{}",
         located.provenance,
         located.frame_ms,
-        line("training presses", &located.taught),
+        line("training presses", &located.trained_on),
         line("held-out presses", &located.unseen),
     )
 }

@@ -6,11 +6,11 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
-use twintac_lab::Reality;
+use twintac_lab::EmulatorConfiguration;
 use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_limits};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
-use twintac_run::built_in::{LAB_RIG, reality};
+use twintac_run::built_in::{LAB_RIG, emulator};
 use twintac_run::{Run, check_logs};
 use twintac_sensor::SensorFile;
 use twintac_source::Known;
@@ -48,13 +48,13 @@ struct Summary {
 pub(super) fn run(arguments: &Record, program: &Program) -> Result<()> {
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
     let planned = Planned::read(&arguments.protocol, &sensor.sensor, arguments.start.seed)?;
-    let reality = arguments.lab.as_ref().map(|named| reality(named.as_deref()));
-    let reality = reality.transpose()?;
-    if let (Some(reality), true) = (&reality, arguments.at_once) {
+    let emulator = arguments.lab.as_ref().map(|named| emulator(named.as_deref()));
+    let emulator = emulator.transpose()?;
+    if let (Some(emulator), true) = (&emulator, arguments.at_once) {
         let n_presses = planned.presses.len() + planned.loads.len();
         let source = format!("{n_presses} presses on the emulated bench");
         let run = start(arguments, sensor, &source, program.caller()?)?;
-        return Ok(run.emulate(reality, &planned)?);
+        return Ok(run.emulate(emulator, &planned)?);
     }
     let n_loads = planned.loads.len();
     if n_loads > 0 {
@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Record, program: &Program) -> Result<()> {
         return dry_run(arguments, &settings, &plans, &sensor);
     }
     sensor_limits(&sensor.sensor)?;
-    press(arguments, (sensor, settings), reality.as_ref(), &plans, program)
+    press(arguments, (sensor, settings), emulator.as_ref(), &plans, program)
 }
 
 /// Folder of the run.
@@ -119,12 +119,12 @@ fn dry_run(
 fn press(
     arguments: &Record,
     (sensor, settings): (SensorFile, PressSettings),
-    reality: Option<&Reality>,
+    emulator: Option<&EmulatorConfiguration>,
     plans: &[PressPlan],
     program: &Program,
 ) -> Result<()> {
     let faults = arguments.faults.as_deref().map(read_faults).transpose()?;
-    let whose = if reality.is_some() {
+    let whose = if emulator.is_some() {
         "the emulated bench"
     } else {
         settings
@@ -133,13 +133,13 @@ fn press(
         "a real test setup"
     };
     let folder = out(arguments);
-    check_logs(&folder, &sensor, reality, &settings)?;
+    check_logs(&folder, &sensor, emulator, &settings)?;
     check_folder(&folder.join("logs"), plans)?;
     let source = format!("{} presses on {whose}, over its interfaces", plans.len());
     let caller = program.caller()?;
     let run = start(arguments, sensor, &source, caller.clone())?;
-    let mut bench = match reality {
-        Some(reality) => run.emulated_bench(reality, plans, &settings, faults.unwrap_or_default())?,
+    let mut bench = match emulator {
+        Some(emulator) => run.emulated_bench(emulator, plans, &settings, faults.unwrap_or_default())?,
         None => {
             let known = Known {
                 counts_per_pa: arguments.scale,

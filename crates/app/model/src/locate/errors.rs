@@ -109,15 +109,18 @@ impl FrameError {
 }
 
 impl LocationErrors {
-    /// The errors on presses that the twin was trained on (`taught`), or on the others.
-    pub(super) fn of(presses: &[LocatedPress], taught: bool) -> Option<Self> {
+    /// The errors on presses that the twin was trained on (`trained_on`), or on the others.
+    pub(super) fn of(presses: &[LocatedPress], trained_on: bool) -> Option<Self> {
         let frames = presses.iter().flat_map(|press| &press.frames);
         let largest_kpa = frames.map(|frame| frame.largest_kpa).fold(0.0, f64::max);
         let counts = |frame: &&LocatedFrame| {
             frame.largest_kpa > FELT * largest_kpa
                 && frame.true_depth_mm.is_some_and(|depth_mm| depth_mm > 0.0)
         };
-        let own: Vec<&LocatedPress> = presses.iter().filter(|press| press.taught == taught).collect();
+        let own: Vec<&LocatedPress> = presses
+            .iter()
+            .filter(|press| press.trained_on == trained_on)
+            .collect();
         let places = |errors: &[(f64, FrameError)]| {
             Quantiles::of(errors.iter().map(|(_, error)| error.place_mm).collect())
         };
@@ -194,10 +197,10 @@ mod tests {
 
     #[test]
     fn frames_count_that_are_felt_in_the_gel() {
-        let press = |taught: bool, frames: Vec<LocatedFrame>| LocatedPress {
+        let press = |trained_on: bool, frames: Vec<LocatedFrame>| LocatedPress {
             name: String::new(),
             mounting: String::new(),
-            taught,
+            trained_on,
             frames,
         };
         let frames = vec![
@@ -223,8 +226,8 @@ mod tests {
         near(errors.depth_within_two_deviations_percent, 50.0);
         let [x_mm, depth_mm] = errors.of_presses[0].at_peak_mm.unwrap();
         assert!((x_mm - 0.3).abs() < 1e-9 && (depth_mm + 0.3).abs() < 1e-9);
-        let taught = LocationErrors::of(&presses, true).unwrap();
-        assert!(taught.place_mm.median.unwrap().abs() < 1e-12);
+        let trained_on = LocationErrors::of(&presses, true).unwrap();
+        assert!(trained_on.place_mm.median.unwrap().abs() < 1e-12);
         assert!(LocationErrors::of(&presses[..1], true).is_none());
         // A frame that counts without a contact found: there are no errors.
         let missed = [press(false, vec![frame(1.0, 50.0, None)])];

@@ -10,7 +10,7 @@ pub struct LocatedPress {
     /// Name of the mounting (one installation of sensor and indenter).
     pub mounting: String,
     /// Whether the twin was trained on this press.
-    pub taught: bool,
+    pub trained_on: bool,
     /// Its frames.
     pub frames: Vec<LocatedFrame>,
 }

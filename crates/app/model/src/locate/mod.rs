@@ -25,7 +25,7 @@ use twintac_work::{Progress, Silent, WorkError};
 use crate::gel::gel_of;
 use crate::press_checksum::press_checksum;
 use crate::taxels::left_out;
-use crate::temperature::as_taught;
+use crate::temperature::as_in_training;
 use crate::unseen::refuse_other_sensor;
 
 pub use errors::LocationErrors;
@@ -62,7 +62,7 @@ pub struct Located {
     /// Errors on presses that the twin was not trained on; `None` without such presses.
     pub unseen: Option<LocationErrors>,
     /// Errors on presses that the twin was trained on.
-    pub taught: Option<LocationErrors>,
+    pub trained_on: Option<LocationErrors>,
     /// The presses in order.
     pub presses: Vec<LocatedPress>,
     /// Mean time of a frame, ms, on one core. It is not reproducible.
@@ -140,11 +140,11 @@ impl Locator {
     pub fn locate(&self, recording: &Recording) -> Result<Located, WorkError> {
         let record = &self.model.record;
         refuse_other_sensor(recording, self.gel.sensor())?;
-        let recording = &*as_taught(recording, record, &Silent)?;
-        let taught: Vec<bool> = recording
+        let recording = &*as_in_training(recording, record, &Silent)?;
+        let trained_on: Vec<bool> = recording
             .presses
             .iter()
-            .map(|press| record.taught_by.contains(&press_checksum(press)))
+            .map(|press| record.trained_on.contains(&press_checksum(press)))
             .collect();
         let (mut presses, mut busy_s) = (Vec::new(), 0.0);
         let mut following: Option<LocatorTracker> = None;
@@ -165,7 +165,7 @@ impl Locator {
             presses.push(LocatedPress {
                 name: press.name.clone(),
                 mounting: press.mounting.clone(),
-                taught: taught[number],
+                trained_on: trained_on[number],
                 frames,
             });
         }
@@ -176,7 +176,7 @@ impl Locator {
             variant: record.variant,
             settings: *self.inverse.settings(),
             unseen: LocationErrors::of(&presses, false),
-            taught: LocationErrors::of(&presses, true),
+            trained_on: LocationErrors::of(&presses, true),
             presses,
             frame_ms: 1e3 * busy_s / n_frames.max(1) as f64,
         })

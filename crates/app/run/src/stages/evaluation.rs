@@ -47,9 +47,9 @@ impl Stage for Evaluating<'_> {
         let presses = read_pairs(&self.pairs)?;
         let model = Model::load(&self.training.file(HELD_OUT))?;
         let split = &model.record.split;
-        let teachers = [&split.train[..], &split.validation].concat();
+        let training_presses = [&split.train[..], &split.validation].concat();
         let left_out = left_out(sensor);
-        let baselines = Baselines::fit(&presses, &teachers, &ports_mm(sensor), &left_out)?;
+        let baselines = Baselines::fit(&presses, &training_presses, &ports_mm(sensor), &left_out)?;
         let scale = Scale::of(&presses, left_out.clone());
         let evaluation = evaluate(&model.twin, &presses, &split.test, &scale, Some(&baselines));
         let every_taxel = (!left_out.is_empty()).then(|| {

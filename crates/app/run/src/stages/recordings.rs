@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use twintac_lab::{Lab, LiveTable, Reality};
+use twintac_lab::{EmulatorConfiguration, Lab, LiveTable};
 use twintac_log::{ReadOptions, read_bag};
 use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::{Import, ImportSummary, Press, Recording, guess_bag_import};
@@ -111,7 +111,7 @@ fn compensate(
 #[derive(Serialize)]
 struct Emulating<'a> {
     sensor: &'a Keyed<SensorFile>,
-    reality: &'a Reality,
+    emulator: &'a EmulatorConfiguration,
     plans: &'a [PressPlan],
     loads: &'a [LoadPlan],
 }
@@ -123,7 +123,7 @@ impl Stage for Emulating<'_> {
     type Error = WorkError;
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
-        let lab = keyed_lab(self.sensor, self.reality)?;
+        let lab = keyed_lab(self.sensor, self.emulator)?;
         let store = Store::new(&folder.join("presses"), Self::NAME);
         let presses = |plan| EmulatedPress { lab: &lab, plan };
         let mut presses = all(progress, "recording", &store, self.plans.iter().map(presses))?;
@@ -144,9 +144,9 @@ impl Stage for Emulating<'_> {
 }
 
 /// The emulated bench follows from the sensor and the emulator configuration.
-fn keyed_lab(sensor: &Keyed<SensorFile>, reality: &Reality) -> Result<Keyed<Lab>, WorkError> {
-    let lab = Lab::new(Arc::clone(&sensor.sensor), reality.clone())?;
-    Ok(Keyed::from_inputs(lab, &(sensor, reality))?)
+fn keyed_lab(sensor: &Keyed<SensorFile>, emulator: &EmulatorConfiguration) -> Result<Keyed<Lab>, WorkError> {
+    let lab = Lab::new(Arc::clone(&sensor.sensor), emulator.clone())?;
+    Ok(Keyed::from_inputs(lab, &(sensor, emulator))?)
 }
 
 #[derive(Serialize)]
@@ -191,7 +191,7 @@ impl Recipe for EmulatedLoad<'_> {
 #[derive(Serialize)]
 struct LiveTables<'a> {
     sensor: &'a Keyed<SensorFile>,
-    reality: &'a Reality,
+    emulator: &'a EmulatorConfiguration,
     plans: &'a [PressPlan],
 }
 
@@ -205,7 +205,7 @@ impl Stage for LiveTables<'_> {
     type Error = WorkError;
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
-        let lab = keyed_lab(self.sensor, self.reality)?;
+        let lab = keyed_lab(self.sensor, self.emulator)?;
         let store = Store::new(&folder.join("places"), Self::NAME);
         let recipes = self.plans.iter().map(|plan| LiveTableAt { lab: &lab, plan });
         let tables = all(progress, "computing", &store, recipes)?;
@@ -331,10 +331,10 @@ impl Run {
     ///
     /// # Errors
     /// A press that the gel cannot carry out.
-    pub fn emulate(&self, reality: &Reality, planned: &Planned) -> Result<(), WorkError> {
+    pub fn emulate(&self, emulator: &EmulatorConfiguration, planned: &Planned) -> Result<(), WorkError> {
         self.run_stage(&Emulating {
             sensor: self.keyed_sensor(),
-            reality,
+            emulator,
             plans: &planned.presses,
             loads: &planned.loads,
         })
@@ -358,12 +358,12 @@ impl Run {
     /// is computed.
     pub(crate) fn live_tables(
         &self,
-        reality: &Reality,
+        emulator: &EmulatorConfiguration,
         plans: &[PressPlan],
     ) -> Result<Vec<LiveTable>, WorkError> {
         let finished = self.run_stage(&LiveTables {
             sensor: self.keyed_sensor(),
-            reality,
+            emulator,
             plans,
         })?;
         Ok(read_json(&finished.file(TABLES))?)

@@ -60,12 +60,20 @@ impl Stage for Simulating<'_> {
         let settings = setup.resolved(&recording)?;
         let places = Places::of(&recording, &store, &settings.places)?;
         let split = Split::new(&recording, &settings.split, settings.seed)?;
-        let teachers = [&split.train[..], &split.validation].concat();
+        let training_presses = [&split.train[..], &split.validation].concat();
         let (how, taxels) = (&settings.bench, &settings.taxels);
-        let bench = fit_bench(&recording, &places, &teachers, &store, how, taxels)?;
+        let bench = fit_bench(&recording, &places, &training_presses, &store, how, taxels)?;
         let places = places.at_bench(&bench);
         let tables = store.depth_tables(&places.requests)?;
-        let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, how, taxels)?;
+        let bench = refine_bench(
+            &recording,
+            &places,
+            &tables,
+            &training_presses,
+            &bench,
+            how,
+            taxels,
+        )?;
         write_json(&folder.join("split.json"), &split)?;
         write_json(&folder.join("bench.json"), &bench)?;
         write_json(&folder.join("places.json"), &places)?;

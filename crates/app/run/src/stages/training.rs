@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use digitac::{
-    Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split,
-    TrainSettings, Trained, TrainedWith, Variant, calibrate,
+    Certainty, Contact, Epoch, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split,
+    TrainSettings, Trained, TrainedWith, TrainingData, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
 use twintac_model::{left_out, press_checksum};
@@ -43,7 +43,7 @@ pub const COMPLETE: &str = "complete";
 
 /// The inputs of training.
 #[derive(Clone, Serialize)]
-struct Teaching<'a> {
+struct Inputs<'a> {
     #[serde(flatten)]
     setup: Setup<'a>,
     recordings: Finished,
@@ -54,7 +54,7 @@ struct Teaching<'a> {
 #[derive(Serialize)]
 struct TrainingStage<'a> {
     #[serde(flatten)]
-    teaching: Teaching<'a>,
+    inputs: Inputs<'a>,
 }
 
 impl Stage for TrainingStage<'_> {
@@ -64,7 +64,7 @@ impl Stage for TrainingStage<'_> {
     type Error = WorkError;
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
-        let training = Training::open(&self.teaching)?;
+        let training = Training::open(&self.inputs)?;
         let work = Work::start(progress, "training", training.n_epochs());
         let split = &training.simulation.split;
         let trained = training.train(split, &training.settings.train, &work)?;
@@ -73,8 +73,8 @@ impl Stage for TrainingStage<'_> {
             &folder.join("variants.json"),
             &training.variants(&trained, chosen),
         )?;
-        let lessons = training.lessons();
-        let certainty = calibrate(&lessons, split, chosen.twin.variant())?;
+        let data = training.training_data();
+        let certainty = calibrate(&data, split, chosen.twin.variant())?;
         training.keep(chosen, split.clone(), certainty.clone(), &folder.join(HELD_OUT))?;
 
         let everything = training.everything();
@@ -84,8 +84,8 @@ impl Stage for TrainingStage<'_> {
         };
         let complete = training.train(&everything, &again, &work)?;
         let complete = complete.first().ok_or_else(nothing_trained)?;
-        let teachers = [&everything.train[..], &everything.validation].concat();
-        let certainty = certainty.map(|certainty| certainty.taught_by(&lessons, &teachers));
+        let training_presses = [&everything.train[..], &everything.validation].concat();
+        let certainty = certainty.map(|certainty| certainty.with_training_set(&data, &training_presses));
         training.keep(complete, everything, certainty, &folder.join(COMPLETE))
     }
 }
@@ -94,7 +94,7 @@ impl Stage for TrainingStage<'_> {
 #[derive(Serialize)]
 struct PaperTwin<'a> {
     #[serde(flatten)]
-    teaching: Teaching<'a>,
+    inputs: Inputs<'a>,
 }
 
 impl Stage for PaperTwin<'_> {
@@ -104,7 +104,7 @@ impl Stage for PaperTwin<'_> {
     type Error = WorkError;
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
-        let training = Training::open(&self.teaching)?;
+        let training = Training::open(&self.inputs)?;
         let work = Work::start(progress, "training", training.settings.train.epochs);
         let settings = TrainSettings {
             variants: Some(vec![Variant::Paper]),
@@ -140,12 +140,12 @@ impl Run {
     /// # Errors
     /// Earlier stages do not exist, or do not match their present inputs; a training that failed.
     pub fn train_paper_twin(&self) -> Result<Finished, WorkError> {
-        let teaching = self.teaching()?;
-        self.run_stage(&PaperTwin { teaching })
+        let inputs = self.inputs()?;
+        self.run_stage(&PaperTwin { inputs })
     }
 
-    fn teaching(&self) -> Result<Teaching<'_>, WorkError> {
-        Ok(Teaching {
+    fn inputs(&self) -> Result<Inputs<'_>, WorkError> {
+        Ok(Inputs {
             setup: self.setup(),
             recordings: self.recordings()?,
             simulation: self.simulation()?,
@@ -154,8 +154,8 @@ impl Run {
     }
 
     fn training_stage(&self) -> Result<TrainingStage<'_>, WorkError> {
-        let teaching = self.teaching()?;
-        Ok(TrainingStage { teaching })
+        let inputs = self.inputs()?;
+        Ok(TrainingStage { inputs })
     }
 
     /// The training stage, if it matches its present inputs.
@@ -184,11 +184,11 @@ struct Training<'a> {
 }
 
 impl<'a> Training<'a> {
-    fn open(teaching: &'a Teaching<'a>) -> Result<Self, WorkError> {
-        let setup = &teaching.setup;
-        let recording = read_recording(&teaching.recordings)?;
-        let simulation = Simulation::read(&teaching.simulation)?;
-        let presses = read_pairs(&teaching.pairs)?;
+    fn open(inputs: &'a Inputs<'a>) -> Result<Self, WorkError> {
+        let setup = &inputs.setup;
+        let recording = read_recording(&inputs.recordings)?;
+        let simulation = Simulation::read(&inputs.simulation)?;
+        let presses = read_pairs(&inputs.pairs)?;
         let settings = setup.resolved(&recording)?;
         let contacts = contacts(&simulation.places, setup.sensor, setup.settings)?;
         let scale = Scale::of(&presses, left_out(&setup.sensor.sensor));
@@ -213,8 +213,8 @@ impl<'a> Training<'a> {
     }
 
     /// The data from which twins are refitted to calibrate the prediction intervals.
-    fn lessons(&self) -> Lessons<'_> {
-        Lessons {
+    fn training_data(&self) -> TrainingData<'_> {
+        TrainingData {
             recording: &self.recording,
             presses: &self.presses,
             places: &self.simulation.places,
@@ -280,7 +280,7 @@ impl<'a> Training<'a> {
         certainty: Option<Certainty>,
         folder: &Path,
     ) -> Result<(), WorkError> {
-        let judged = (!split.test.is_empty()).then(|| {
+        let evaluation = (!split.test.is_empty()).then(|| {
             let held_out = &self.simulation.split;
             digitac::evaluate(&trained.twin, &self.presses, &held_out.test, &self.scale, None)
         });
@@ -299,7 +299,7 @@ impl<'a> Training<'a> {
             },
             provenance: self.recording.provenance,
             files: files(&self.recording),
-            taught_by: split
+            trained_on: split
                 .train
                 .iter()
                 .chain(&split.validation)
@@ -313,7 +313,7 @@ impl<'a> Training<'a> {
             trained.twin.clone(),
             origin,
             trained.validation.clone(),
-            judged.as_ref(),
+            evaluation.as_ref(),
         );
         Ok(model.save(folder)?)
     }

@@ -47,16 +47,18 @@ impl LearnedBench<'_> {
                 value: value(posterior.values()),
                 uncertainty: posterior.uncertainty(&|values, _| value(values)),
             };
-            let has_taught = |mounting: &str| {
+            let is_trained_on = |mounting: &str| {
                 let mut mountings = used.iter().map(|&index| &self.recording.presses[index].mounting);
-                mountings.any(|taught| taught == mounting)
+                mountings.any(|trained_on| trained_on == mounting)
             };
             let bench = BenchEstimate {
                 tip_radius_mm: self.bench.tip_radius_mm,
                 has_history: self.bench.has_history,
                 gains: Some(posterior.gains.clone()),
                 deviation_percent: 100.0 * posterior.deviation,
-                ..near.problem.estimate(posterior.values(), &estimate, &has_taught)
+                ..near
+                    .problem
+                    .estimate(posterior.values(), &estimate, &is_trained_on)
             };
             Ok((bench, posterior))
         })

@@ -250,13 +250,13 @@ impl<'a> BenchProblem<'a> {
         &self,
         values: &[f64],
         estimate: &EstimateOf<'_>,
-        has_taught: &dyn Fn(&str) -> bool,
+        is_trained_on: &dyn Fn(&str) -> bool,
     ) -> BenchEstimate {
         let guess = self.guess(values);
         let estimate = |value: &dyn Fn(&Guess) -> f64| estimate(&|values: &[f64]| value(&self.guess(values)));
         let offsets = self.mountings.iter().enumerate();
         let contact_offset_mm: BTreeMap<String, Estimate> = offsets
-            .filter(|(_, (name, _))| has_taught(name))
+            .filter(|(_, (name, _))| is_trained_on(name))
             .map(|(index, (name, _))| (name.clone(), estimate(&|guess| guess.offsets_mm[index])))
             .collect();
         BenchEstimate {

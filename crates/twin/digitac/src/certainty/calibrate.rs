@@ -9,7 +9,7 @@ use twintac_recording::Recording;
 
 use super::certain::rates_kpa_per_s;
 use super::spread::{Known, Spread};
-use super::taught::{Taught, quantile};
+use super::training_set::{TrainingSet, quantile};
 use super::{Certainty, Contact};
 use crate::bench_fit::{features, refine_bench};
 use crate::evaluation::predict_some;
@@ -32,7 +32,7 @@ const UNLIKE_PART: usize = 5;
 const GROWTH: [f64; 2] = [0.25, 10.0];
 
 /// Everything that a twin is made of, to make it again.
-pub struct Lessons<'a> {
+pub struct TrainingData<'a> {
     /// The recorded presses.
     pub recording: &'a Recording,
     /// The same presses paired with the simulated gel, for the fitted test setup.
@@ -78,18 +78,18 @@ struct Frame {
 /// # Errors
 /// Those of the fits.
 pub fn calibrate(
-    lessons: &Lessons<'_>,
+    data: &TrainingData<'_>,
     split: &Split,
     variant: Variant,
 ) -> Result<Option<Certainty>, DigitacError> {
     let variant = variant.without_perceptron();
-    let teachers: BTreeSet<usize> = split.train.iter().chain(&split.validation).copied().collect();
-    let folds = lessons.folds(&teachers);
+    let training_presses: BTreeSet<usize> = split.train.iter().chain(&split.validation).copied().collect();
+    let folds = data.folds(&training_presses);
     let n_presses: usize = folds.iter().map(BTreeSet::len).sum();
     if n_presses < FEWEST_PRESSES {
         return Ok(None);
     }
-    let of_folds = folds.par_iter().map(|fold| lessons.without(fold, split, variant));
+    let of_folds = folds.par_iter().map(|fold| data.without(fold, split, variant));
     let frames = of_folds.collect::<Result<Vec<_>, _>>()?.concat();
     let errors: Vec<(Known, f64)> = frames
         .iter()
@@ -110,19 +110,19 @@ pub fn calibrate(
     };
     let of_contact = frames.iter().filter(|frame| frame.depth_mm > 0.0);
     let mut scores: Vec<f64> = of_contact.map(|frame| frame.ood_score).collect();
-    let teachers: Vec<usize> = teachers.into_iter().collect();
+    let training_presses: Vec<usize> = training_presses.into_iter().collect();
     let mut certainty = Certainty {
         level_percent: 100.0 * LEVEL,
         threshold: quantile(&mut scores, NOT_FLAGGED).unwrap_or(1.0).max(1.0),
         learned_from: [n_presses, errors.len()],
-        taught: Taught::by(lessons.presses, lessons.places, lessons.contacts, &teachers),
+        training_set: TrainingSet::by(data.presses, data.places, data.contacts, &training_presses),
         spread,
         factors: [in_air.unwrap_or(either), either],
         growth: GROWTH[0],
     };
     let mut growths = Vec::new();
-    for unlike in lessons.unlike(&teachers)? {
-        let frames = lessons.without(&unlike, split, variant)?;
+    for unlike in data.unlike(&training_presses)? {
+        let frames = data.without(&unlike, split, variant)?;
         let unlike = frames
             .iter()
             .filter(|frame| frame.ood_score > certainty.threshold);
@@ -143,24 +143,24 @@ impl Certainty {
     /// The same for a twin that was then trained on more presses: the intervals stay those of the
     /// earlier twin, and these presses make up the training set.
     #[must_use]
-    pub fn taught_by(&self, lessons: &Lessons<'_>, teachers: &[usize]) -> Self {
+    pub fn with_training_set(&self, data: &TrainingData<'_>, training_presses: &[usize]) -> Self {
         Self {
-            taught: Taught::by(lessons.presses, lessons.places, lessons.contacts, teachers),
+            training_set: TrainingSet::by(data.presses, data.places, data.contacts, training_presses),
             ..self.clone()
         }
     }
 }
 
-impl Lessons<'_> {
+impl TrainingData<'_> {
     fn place_mm(&self, press: usize) -> [f64; 2] {
         self.contacts[self.places.of_press[press]].place_mm
     }
 
     /// Training presses divided by location, such that the locations of one division lie between
     /// others. The outermost presses of each indenter are in no division.
-    fn folds(&self, teachers: &BTreeSet<usize>) -> Vec<BTreeSet<usize>> {
+    fn folds(&self, training_presses: &BTreeSet<usize>) -> Vec<BTreeSet<usize>> {
         let mut limits: BTreeMap<&str, [[f64; 2]; 2]> = BTreeMap::new();
-        for &press in teachers {
+        for &press in training_presses {
             let at = self.place_mm(press);
             let of_indenter = limits.entry(&self.presses[press].indenter).or_insert([at; 2]);
             for axis in 0..2 {
@@ -169,7 +169,7 @@ impl Lessons<'_> {
             }
         }
         let mut groups: BTreeMap<(&str, i64, i64), Vec<usize>> = BTreeMap::new();
-        for &press in teachers {
+        for &press in training_presses {
             let (indenter, at) = (&self.presses[press].indenter[..], self.place_mm(press));
             let [low, high] = limits[indenter];
             let is_outer =
@@ -189,10 +189,10 @@ impl Lessons<'_> {
 
     /// The deepest training presses, and the outermost ones at one end of the axis with the largest
     /// range of locations.
-    fn unlike(&self, teachers: &[usize]) -> Result<[BTreeSet<usize>; 2], DigitacError> {
-        let n = teachers.len().div_ceil(UNLIKE_PART);
+    fn unlike(&self, training_presses: &[usize]) -> Result<[BTreeSet<usize>; 2], DigitacError> {
+        let n = training_presses.len().div_ceil(UNLIKE_PART);
         let most = |value: &dyn Fn(usize) -> f64| {
-            let mut sorted = teachers.to_vec();
+            let mut sorted = training_presses.to_vec();
             sorted.sort_by(|a, b| value(*b).total_cmp(&value(*a)));
             sorted.into_iter().take(n).collect()
         };
@@ -201,7 +201,7 @@ impl Lessons<'_> {
             depths.copied().fold(0.0, f64::max)
         };
         let range = |axis: usize| {
-            let along = || teachers.iter().map(|&press| self.place_mm(press)[axis]);
+            let along = || training_presses.iter().map(|&press| self.place_mm(press)[axis]);
             along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
         };
         let axis = usize::from(range(1) > range(0));
@@ -226,12 +226,12 @@ impl Lessons<'_> {
         if train_with.is_empty() {
             return Ok(Vec::new());
         }
-        let teachers = [&train_with[..], &validation].concat();
+        let training_presses = [&train_with[..], &validation].concat();
         if validation.is_empty() {
             validation.clone_from(&train_with);
         }
         let left: Vec<usize> = left.iter().copied().collect();
-        let presses = self.remade(&teachers)?;
+        let presses = self.remade(&training_presses)?;
         let division = Split {
             train: train_with,
             validation,
@@ -254,17 +254,17 @@ impl Lessons<'_> {
             return Ok(Vec::new());
         };
         let predicted = predict_some(&trained.twin, &presses, &left);
-        let taught = Taught::by(&presses, self.places, self.contacts, &teachers);
+        let training_set = TrainingSet::by(&presses, self.places, self.contacts, &training_presses);
         let mut frames = Vec::new();
         for (&press, predicted) in left.iter().zip(&predicted) {
             let contact = &self.contacts[self.places.of_press[press]];
-            frames.extend(self.frames(&presses[press], predicted, contact, &taught));
+            frames.extend(self.frames(&presses[press], predicted, contact, &training_set));
         }
         Ok(frames)
     }
 
     /// The paired presses for a test setup that is fitted to some of them.
-    fn remade(&self, teachers: &[usize]) -> Result<Vec<PairedPress>, DigitacError> {
+    fn remade(&self, training_presses: &[usize]) -> Result<Vec<PairedPress>, DigitacError> {
         let settings = BenchSettings {
             n_blocks: 0,
             ..self.bench_settings.clone()
@@ -274,7 +274,7 @@ impl Lessons<'_> {
             recording,
             places,
             tables,
-            teachers,
+            training_presses,
             self.bench,
             &settings,
             self.taxels,
@@ -297,13 +297,13 @@ impl Lessons<'_> {
         press: &PairedPress,
         predicted_kpa: &[Vec<f64>],
         contact: &Contact,
-        taught: &Taught,
+        training_set: &TrainingSet,
     ) -> Vec<Frame> {
         let frame = |frame: usize| {
             let row = &predicted_kpa[frame];
             let rates = rates_kpa_per_s(&press.features.time_s, predicted_kpa, frame);
             let depth_mm = press.features.depth_mm[frame];
-            let ood_score = taught.ood_score(contact.place_mm, &contact.underside, depth_mm);
+            let ood_score = training_set.ood_score(contact.place_mm, &contact.underside, depth_mm);
             let largest_kpa = row.iter().fold(0.0_f64, |most, kpa| most.max(kpa.abs()));
             let usable = |taxel: &usize| press.valid[frame][*taxel] && !self.scale.left_out.contains(taxel);
             let reading = |taxel: usize| {

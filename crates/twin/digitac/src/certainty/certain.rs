@@ -5,7 +5,7 @@ use twintac_config::{Checked, Ranges};
 
 use super::Contact;
 use super::spread::{Known, Spread};
-use super::taught::Taught;
+use super::training_set::TrainingSet;
 
 /// Uncertainty of a twin, learned from presses that were left out when it was fitted again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,8 @@ pub struct Certainty {
     pub threshold: f64,
     /// Numbers of presses and of readings that the intervals were learned from.
     pub learned_from: [usize; 2],
-    pub(super) taught: Taught,
+    #[serde(alias = "taught")]
+    pub(super) training_set: TrainingSet,
     pub(super) spread: Spread,
     /// Half an interval over the spread, for non-contact frames and for contact.
     pub(super) factors: [f64; 2],
@@ -30,14 +31,14 @@ impl Checked for Certainty {
             level_percent,
             threshold,
             learned_from: _,
-            taught,
+            training_set,
             spread,
             factors,
             growth,
         } = self;
         ranges.number("level_percent", *level_percent, 0.0..=100.0);
         ranges.number("threshold", *threshold, 0.0..=1e9);
-        ranges.inside("taught", taught);
+        ranges.inside("training_set", training_set);
         ranges.inside("spread", spread);
         ranges.numbers("factors", factors, 2, 0.0..=1e12);
         ranges.number("growth", *growth, 0.0..=1e6);
@@ -61,7 +62,7 @@ impl Certainty {
     /// location, depth and contact geometry. 0 above the gel. Allocates no memory.
     #[must_use]
     pub fn ood_score(&self, contact: &Contact, depth_mm: f64) -> f64 {
-        self.taught
+        self.training_set
             .ood_score(contact.place_mm, &contact.underside, depth_mm)
     }
 

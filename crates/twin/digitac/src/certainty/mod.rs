@@ -8,10 +8,10 @@
 //! spread      the probable size of an error, from what is known before the measurement: the
 //!             reading, its rate,
 //!             the frame's largest reading, the OOD score
-//! taught      the OOD score of a contact: location, depth, and the contact geometry of the
+//! training_set  the OOD score of a contact: location, depth, and the contact geometry of the
 //!             indenter
 //! certain     both together: half widths, OOD score and flag of each frame
-//! judge       coverage and width of the intervals on presses that were not used for training
+//! score       coverage and width of the intervals on presses that were not used for training
 //! ```
 //!
 //! **Intervals** are split-conformal (Lei et al., JASA 113, 2018). Half an interval is the spread
@@ -40,14 +40,14 @@
 
 mod calibrate;
 mod certain;
-mod judge;
+mod score;
 mod spread;
-mod taught;
 #[cfg(test)]
 mod tests;
+mod training_set;
 
-pub use calibrate::{Lessons, calibrate};
+pub use calibrate::{TrainingData, calibrate};
 pub use certain::{Certainty, PressCertainty};
-pub use judge::{CertaintyScore, area_under_curve, score_certainty};
-pub use taught::Contact;
-pub(crate) use taught::Taught;
+pub use score::{CertaintyScore, area_under_curve, score_certainty};
+pub use training_set::Contact;
+pub(crate) use training_set::TrainingSet;

@@ -37,11 +37,17 @@ fn make(truth: &Truth, n_places: usize) -> Made {
     let tables = Formula.depth_tables(&places.requests).unwrap();
     let split = Split::new(&recording, &SplitSettings::default(), 1).unwrap();
     let settings = BenchSettings::default();
-    let teachers = [&split.train[..], &split.validation].concat();
+    let training_presses = [&split.train[..], &split.validation].concat();
     let nominal = BenchEstimate::nominal();
     let taxels = Taxels::default();
     let bench = refine_bench(
-        &recording, &places, &tables, &teachers, &nominal, &settings, &taxels,
+        &recording,
+        &places,
+        &tables,
+        &training_presses,
+        &nominal,
+        &settings,
+        &taxels,
     )
     .unwrap();
     let presses = pair(&recording, &places, &tables, &bench, &PairSettings::default()).unwrap();
@@ -76,7 +82,7 @@ fn make(truth: &Truth, n_places: usize) -> Made {
 
 impl Made {
     fn certainty(&self) -> Certainty {
-        let lessons = Lessons {
+        let data = TrainingData {
             recording: &self.recording,
             presses: &self.presses,
             places: &self.places,
@@ -90,16 +96,21 @@ impl Made {
             block_mm: 0.1,
             scale: &self.scale,
         };
-        calibrate(&lessons, &self.split, self.twin.variant())
+        calibrate(&data, &self.split, self.twin.variant())
             .unwrap()
             .unwrap()
     }
 }
 
 #[test]
-fn intervals_cover_what_they_promise_on_presses_that_taught_nothing() {
+fn intervals_cover_what_they_promise_on_presses_that_nothing_was_trained_on() {
     let made = make(&Truth::new(), 33);
     let certainty = made.certainty();
+    let text = serde_json::to_string(&certainty).unwrap();
+    let former = text.replace("\"training_set\"", "\"taught\"");
+    assert_ne!(former, text);
+    assert_eq!(serde_json::from_str::<Certainty>(&former).unwrap(), certainty);
+
     let chosen = &made.split.test;
     let places = (&made.places, &made.contacts[..]);
     let found = score_certainty(

@@ -1,9 +1,9 @@
 //! A twin made and evaluated again for each way to hold presses out. Nothing of one division uses
 //! results of another.
 
-mod judge;
+mod evaluate;
 mod new_taxel;
-mod unlike;
+mod ood;
 
-pub use judge::{Bench, Judgement, judge};
-pub use unlike::ToldApart;
+pub use evaluate::{Bench, FoldEvaluation, evaluate_fold};
+pub use ood::OodDetection;

@@ -28,10 +28,10 @@ pub(super) fn with_gain(
     twin: &Twin,
     taxel: usize,
     pairs: &[PairedPress],
-    teachers: &[usize],
+    training_presses: &[usize],
     left_out: &BTreeSet<usize>,
 ) -> Result<Twin, DigitacError> {
-    let Some(press) = largest(pairs, teachers, taxel) else {
+    let Some(press) = largest(pairs, training_presses, taxel) else {
         return Err(DigitacError::TooFew {
             expected: format!("a press with readings of {}", twin.taxels()[taxel]),
             found: "none".into(),

@@ -76,14 +76,14 @@ impl Baselines {
     /// No recording causes an error.
     pub fn fit(
         recorded: &[PairedPress],
-        teachers: &[usize],
+        training_presses: &[usize],
         ports_mm: &[[f64; 2]],
         left_out: &BTreeSet<usize>,
     ) -> Result<Self, DigitacError> {
-        let presses: Vec<&PairedPress> = teachers.iter().map(|&index| &recorded[index]).collect();
+        let presses: Vec<&PairedPress> = training_presses.iter().map(|&index| &recorded[index]).collect();
         Ok(Self {
             polynomial: StaticPolynomial::fit(&presses),
-            kernel: Kernel::fit(recorded, teachers, ports_mm, left_out)?,
+            kernel: Kernel::fit(recorded, training_presses, ports_mm, left_out)?,
         })
     }
 }
@@ -103,16 +103,16 @@ pub fn evaluate(
         presses.iter().map(|press| predict(press)).collect()
     };
     let predictions = predict_some(twin, recorded, chosen);
-    let judge = |predictions: &[Vec<Vec<f64>>]| score(presses.iter().copied(), predictions, scale);
+    let score_all = |predictions: &[Vec<Vec<f64>>]| score(presses.iter().copied(), predictions, scale);
     let warped: Vec<PairedPress> = presses.iter().map(|press| press.warped()).collect();
     Evaluation {
         variant: twin.variant(),
         taxels: twin.taxels().to_vec(),
-        twin: judge(&predictions),
+        twin: score_all(&predictions),
         warped: score(&warped, &predictions, scale).overall,
-        zero: judge(&all(&baseline::zero)),
-        polynomial: baselines.map(|b| judge(&all(&|press| b.polynomial.predict(press)))),
-        kernel: baselines.map(|b| judge(&all(&|press| b.kernel.predict(press)))),
+        zero: score_all(&all(&baseline::zero)),
+        polynomial: baselines.map(|b| score_all(&all(&|press| b.polynomial.predict(press)))),
+        kernel: baselines.map(|b| score_all(&all(&|press| b.kernel.predict(press)))),
         presses: presses
             .iter()
             .zip(&predictions)

@@ -52,12 +52,12 @@ impl Kernel {
     /// plane; `[n_taxels]`.
     pub(crate) fn fit(
         recorded: &[PairedPress],
-        teachers: &[usize],
+        training_presses: &[usize],
         ports_mm: &[[f64; 2]],
         left_out: &BTreeSet<usize>,
     ) -> Result<Self, DigitacError> {
         let mut groups: BTreeMap<String, Vec<&PairedPress>> = BTreeMap::new();
-        for &index in teachers {
+        for &index in training_presses {
             groups
                 .entry(recorded[index].indenter.clone())
                 .or_default()

@@ -44,8 +44,8 @@ pub struct ModelRecord {
     /// Files from which the training presses were read.
     pub files: Vec<String>,
     /// Checksums of the training presses. Presses of another evaluation must not be among them.
-    #[serde(default)]
-    pub taught_by: BTreeSet<String>,
+    #[serde(default, alias = "taught_by")]
+    pub trained_on: BTreeSet<String>,
     /// Compensation of the zeros for temperature. The training readings were compensated, as far as
     /// they had temperatures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -92,7 +92,7 @@ pub struct Origin {
     /// Files from which the training presses were read.
     pub files: Vec<String>,
     /// Checksums of the training presses.
-    pub taught_by: BTreeSet<String>,
+    pub trained_on: BTreeSet<String>,
     /// Compensation of the zeros for temperature, if it is known.
     pub temperature: Option<Compensation>,
     /// The presses used for training, validation and test.
@@ -116,7 +116,7 @@ impl Model {
             settings: origin.settings,
             provenance: origin.provenance,
             files: origin.files,
-            taught_by: origin.taught_by,
+            trained_on: origin.trained_on,
             temperature: origin.temperature,
             split: origin.split,
             validation,

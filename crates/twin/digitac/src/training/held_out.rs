@@ -256,8 +256,8 @@ mod tests {
         for fold in &files {
             let of_file = |index: &usize| recording.presses[*index].mounting == fold.held_out;
             assert!(fold.split.test.iter().all(of_file));
-            let teachers = [&fold.split.train[..], &fold.split.validation].concat();
-            assert!(!teachers.iter().any(of_file) && !teachers.is_empty());
+            let training_presses = [&fold.split.train[..], &fold.split.validation].concat();
+            assert!(!training_presses.iter().any(of_file) && !training_presses.is_empty());
         }
         assert_eq!(
             files.iter().map(|fold| fold.split.test.len()).sum::<usize>(),
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn no_press_that_teaches_is_as_deep_as_those_held_out_by_depth() {
+    fn no_training_press_is_as_deep_as_those_held_out_by_depth() {
         let mut recording = Truth::new().recording(12);
         for (index, press) in recording.presses.iter_mut().enumerate() {
             for pose in &mut press.gel_from_indenter {
@@ -292,7 +292,7 @@ mod tests {
         let split = &folds[0].split;
         let z = |index: &usize| deepest_pose(&recording.presses[*index]).unwrap().position_mm.z;
         let deepest = split.test.iter().map(z).fold(f64::NEG_INFINITY, f64::max);
-        let teachers = split.train.iter().chain(&split.validation).map(z);
-        assert!(teachers.fold(f64::INFINITY, f64::min) > deepest + SAME_DEPTH_MM / 2.0);
+        let training_presses = split.train.iter().chain(&split.validation).map(z);
+        assert!(training_presses.fold(f64::INFINITY, f64::min) > deepest + SAME_DEPTH_MM / 2.0);
     }
 }

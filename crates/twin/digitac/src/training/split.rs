@@ -40,7 +40,8 @@ pub struct SplitSettings {
     /// Largest number of locations for training and validation, drawn at random; presses at the
     /// others are not used. Default: all that are not held out for testing.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub teaching_places: Option<usize>,
+    #[serde(alias = "teaching_places")]
+    pub training_places: Option<usize>,
     /// Installations (mountings) of an indenter that are held out for testing as a whole. If there
     /// are any, no locations are held out for testing.
     #[serde(alias = "test_files")]
@@ -53,7 +54,7 @@ impl Default for SplitSettings {
             block_mm: None,
             test_one_in: 4,
             validation_one_in: 5,
-            teaching_places: None,
+            training_places: None,
             test_mountings: BTreeSet::new(),
         }
     }
@@ -65,7 +66,7 @@ impl Checked for SplitSettings {
             block_mm,
             test_one_in,
             validation_one_in,
-            teaching_places,
+            training_places,
             test_mountings: _,
         } = self;
         if let Some(block_mm) = block_mm {
@@ -73,8 +74,8 @@ impl Checked for SplitSettings {
         }
         ranges.number("test_one_in", *test_one_in, 2.0..=1000.0);
         ranges.number("validation_one_in", *validation_one_in, 2.0..=1000.0);
-        if let Some(teaching_places) = teaching_places {
-            ranges.number("teaching_places", *teaching_places, 2.0..=1e6);
+        if let Some(training_places) = training_places {
+            ranges.number("training_places", *training_places, 2.0..=1e6);
         }
     }
 }
@@ -125,7 +126,7 @@ type Place<'a> = (&'a str, i64, i64);
 
 impl Split {
     /// Divides the presses of a recording by location. The outermost locations of each file are
-    /// used for training (unless [`SplitSettings::teaching_places`] limits their number): a twin is
+    /// used for training (unless [`SplitSettings::training_places`] limits their number): a twin is
     /// tested between the locations that it was trained on. `seed` draws the others.
     ///
     /// # Errors
@@ -182,10 +183,10 @@ impl Split {
             split.test = draw(&mut inner, settings.test_one_in, seed_number, "test");
         }
         let mut outer: Vec<Vec<usize>> = outer.into_iter().map(|(_, presses)| presses).collect();
-        if let Some(n_teaching) = settings.teaching_places {
+        if let Some(n_training) = settings.training_places {
             inner.append(&mut outer);
             inner.shuffle(&mut seed::stream(seed_number, "split/teaching"));
-            inner.truncate(n_teaching);
+            inner.truncate(n_training);
         }
         split.validation = draw(&mut inner, settings.validation_one_in, seed_number, "validation");
         split.train = inner.into_iter().chain(outer).flatten().collect();
@@ -314,9 +315,9 @@ mod tests {
     }
 
     #[test]
-    fn a_few_places_can_teach() {
+    fn a_few_places_can_be_trained_on() {
         let settings = SplitSettings {
-            teaching_places: Some(6),
+            training_places: Some(6),
             ..SplitSettings::default()
         };
         let (all, few) = (SplitSettings::default(), settings);

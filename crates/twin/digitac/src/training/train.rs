@@ -84,10 +84,10 @@ pub fn train(
         .variants()
         .iter()
         .map(|&variant| {
-            let physics = |teachers: &[usize]| -> Result<Physics, DigitacError> {
+            let physics = |training_presses: &[usize]| -> Result<Physics, DigitacError> {
                 Ok(Physics {
                     variant,
-                    gains: parts.gains(variant, teachers, &scale.left_out, settings)?,
+                    gains: parts.gains(variant, training_presses, &scale.left_out, settings)?,
                     normalization: normalization.clone(),
                     correction_limit: settings.correction_limit,
                 })
@@ -133,10 +133,10 @@ pub fn choose(trained: &[Trained]) -> Result<&Trained, DigitacError> {
         });
     }
     let error = |t: &Trained| t.validation.overall.nearest_in_contact.percent;
-    let judged = trained
+    let evaluated = trained
         .iter()
         .filter_map(|trained| Some((trained, error(trained)?)));
-    let best = judged.min_by(|a, b| a.1.total_cmp(&b.1));
+    let best = evaluated.min_by(|a, b| a.1.total_cmp(&b.1));
     best.map(|(trained, _)| trained)
         .ok_or_else(|| DigitacError::TooFew {
             expected: "validation presses in contact, to choose a variant by".into(),
@@ -186,7 +186,7 @@ impl<'a> Parts<'a> {
     fn gains(
         &self,
         variant: Variant,
-        teachers: &[usize],
+        training_presses: &[usize],
         left_out: &BTreeSet<usize>,
         settings: &TrainSettings,
     ) -> Result<Gains, DigitacError> {
@@ -197,7 +197,7 @@ impl<'a> Parts<'a> {
         };
         let every_press = self.presses.iter().map(|press| &press.features);
         let model = BarometerModel::new(every_press, constants, settings.port_law);
-        let teachers: BTreeSet<usize> = teachers.iter().copied().collect();
+        let training_presses: BTreeSet<usize> = training_presses.iter().copied().collect();
         let presses = in_order(self.presses.iter().map(|press| &press.mounting[..]));
         let fitted: Vec<Fitted<'_>> = presses
             .iter()
@@ -208,7 +208,7 @@ impl<'a> Parts<'a> {
                     features: &press.features,
                     readings_kpa: &press.readings_kpa,
                     valid: &press.valid,
-                    is_used: teachers.contains(&index),
+                    is_used: training_presses.contains(&index),
                 }
             })
             .collect();

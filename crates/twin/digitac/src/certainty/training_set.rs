@@ -51,7 +51,7 @@ impl Contact {
 
 /// The training presses of a twin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Taught {
+pub(crate) struct TrainingSet {
     /// Each contact geometry, with the location and the largest depth of its presses.
     undersides: Vec<(Underside, Vec<Deepest>)>,
     /// Distance between neighbouring training locations, mm.
@@ -66,7 +66,7 @@ struct Deepest {
     depth_mm: f64,
 }
 
-impl Checked for Taught {
+impl Checked for TrainingSet {
     fn check(&self, ranges: &mut Ranges) {
         let Self {
             undersides,
@@ -85,16 +85,16 @@ impl Checked for Taught {
     }
 }
 
-impl Taught {
+impl TrainingSet {
     /// Collects training presses; `contacts` are those of the locations, `[n_places]`.
     pub(crate) fn by(
         presses: &[PairedPress],
         places: &Places,
         contacts: &[Contact],
-        teachers: &[usize],
+        training_presses: &[usize],
     ) -> Self {
         let mut undersides: Vec<(Underside, Vec<Deepest>)> = Vec::new();
-        for &press in teachers {
+        for &press in training_presses {
             let contact = &contacts[places.of_press[press]];
             let depths = presses[press].features.depth_mm.iter().copied();
             let deepest = Deepest {

@@ -9,11 +9,11 @@ use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
 
 use super::new_taxel;
-use super::unlike::{ToldApart, tell_apart};
+use super::ood::{OodDetection, ood_detection};
 use crate::bench_fit::{fit_radius, radius_weights};
 use crate::{
     Baselines, BenchEstimate, BenchSettings, Certainty, CertaintyScore, Contact, DigitacError, Errors, Fold,
-    Lessons, PairSettings, PairedPress, Places, Scale, Score, Taxels, TrainSettings, Twin, Variant,
+    PairSettings, PairedPress, Places, Scale, Score, Taxels, TrainSettings, TrainingData, Twin, Variant,
     calibrate, choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
 };
 
@@ -45,7 +45,7 @@ pub struct Bench<'a> {
 
 /// Errors on the held-out presses of one division.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Judgement {
+pub struct FoldEvaluation {
     /// The held-out file, indenter or taxel; empty if presses were drawn.
     pub held_out: String,
     /// Number of scored presses.
@@ -66,8 +66,8 @@ pub struct Judgement {
     pub certainty: Option<CertaintyScore>,
     /// How well held-out contacts are detected as out of distribution, if they are of another kind
     /// than the training contacts.
-    #[serde(default)]
-    pub told_apart: Option<ToldApart>,
+    #[serde(default, alias = "told_apart")]
+    pub ood_detection: Option<OodDetection>,
     /// Number of frames deeper than the simulation. They are scored all the same.
     pub n_frames_not_simulated: usize,
     /// Number of all scored frames.
@@ -80,14 +80,14 @@ pub struct Judgement {
 ///
 /// # Errors
 /// Those of the fits; too few presses.
-pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> {
+pub fn evaluate_fold(bench: &Bench<'_>, fold: &Fold) -> Result<FoldEvaluation, DigitacError> {
     let (recording, places) = (bench.recording, bench.places);
     let taxels = bench.taxels;
     let left_out = &taxels.left_out;
     let split = &fold.split;
-    let teachers = [&split.train[..], &split.validation].concat();
-    let taught = fold.taxel.map(|taxel| new_taxel::without(recording, taxel));
-    let taught = taught.as_ref().unwrap_or(recording);
+    let training = [&split.train[..], &split.validation].concat();
+    let known = fold.taxel.map(|taxel| new_taxel::without(recording, taxel));
+    let known = known.as_ref().unwrap_or(recording);
 
     let settings = BenchSettings {
         n_blocks: 0,
@@ -95,14 +95,14 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     };
     let mut found = BenchEstimate::nominal();
     if bench.tables.len() > 1 {
-        found = fit_radius(taught, places, bench.tables, &teachers, &settings, taxels)?;
+        found = fit_radius(known, places, bench.tables, &training, &settings, taxels)?;
     }
     let tables = bench.tables_at(&found);
-    let mut fitted = refine_bench(taught, places, &tables, &teachers, &found, &settings, taxels)?;
+    let mut fitted = refine_bench(known, places, &tables, &training, &found, &settings, taxels)?;
     let whole = pair(recording, places, &tables, &fitted, bench.pair)?;
     let scale = Scale::of(&whole, left_out.clone());
     let pairs = match fold.taxel {
-        Some(_) => pair(taught, places, &tables, &fitted, bench.pair)?,
+        Some(_) => pair(known, places, &tables, &fitted, bench.pair)?,
         None => whole,
     };
 
@@ -123,7 +123,7 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     let kernel = match fold.taxel {
         None => Some(Baselines::fit(
             &pairs,
-            &teachers,
+            &training,
             &bench.taxels.ports_mm,
             left_out,
         )?),
@@ -134,23 +134,23 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     let variant = twin.variant();
 
     let certainty = bench.certainty((fold, variant), &pairs, &tables, &fitted, &scale)?;
-    let test = bench.touch_new_files(fold, &teachers, &tables, &twin, &mut fitted)?;
+    let test = bench.touch_new_files(fold, &training, &tables, &twin, &mut fitted)?;
     let pairs = pair(recording, places, &tables, &fitted, bench.pair)?;
     if let Some(taxel) = fold.taxel {
         for candidate in &mut trained {
-            candidate.twin = new_taxel::with_gain(&candidate.twin, taxel, &pairs, &teachers, left_out)?;
+            candidate.twin = new_taxel::with_gain(&candidate.twin, taxel, &pairs, &training, left_out)?;
         }
     }
     let by_place = (places, bench.contacts);
     let sure = |certainty| score_certainty((&twin, certainty), &pairs, by_place, &test, &scale);
-    let judged = trained
+    let evaluations = trained
         .iter()
         .map(|candidate| evaluate(&candidate.twin, &pairs, &test, &scale, kernel.as_ref()));
     let errors = |score: &Score| match fold.taxel {
         Some(taxel) => score.by_taxel.get(taxel).copied().unwrap_or_default(),
         None => score.overall,
     };
-    let mut judgement = Judgement {
+    let mut evaluated = FoldEvaluation {
         held_out: fold.held_out.clone(),
         n_presses: test.len(),
         variant,
@@ -159,21 +159,21 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         kernel: None,
         tip_radius_mm: found.tip_radius_mm.map(|radius| radius.value),
         certainty: certainty.as_ref().map(sure),
-        told_apart: tell_apart(fold, &test, &pairs, places, bench.contacts),
+        ood_detection: ood_detection(fold, &test, &pairs, places, bench.contacts),
         n_frames_not_simulated: 0,
         n_frames: 0,
     };
-    for evaluation in judged {
+    for evaluation in evaluations {
         let own = errors(&evaluation.twin);
-        judgement.variants.insert(evaluation.variant, own);
+        evaluated.variants.insert(evaluation.variant, own);
         if evaluation.variant == variant {
-            judgement.twin = own;
-            judgement.kernel = evaluation.kernel.as_ref().map(errors);
-            judgement.n_frames_not_simulated = evaluation.twin.n_frames_not_simulated;
-            judgement.n_frames = evaluation.twin.n_frames;
+            evaluated.twin = own;
+            evaluated.kernel = evaluation.kernel.as_ref().map(errors);
+            evaluated.n_frames_not_simulated = evaluation.twin.n_frames_not_simulated;
+            evaluated.n_frames = evaluation.twin.n_frames;
         }
     }
-    Ok(judgement)
+    Ok(evaluated)
 }
 
 impl Bench<'_> {
@@ -189,7 +189,7 @@ impl Bench<'_> {
         let (Some(block_mm), None) = (self.intervals_block_mm, fold.taxel) else {
             return Ok(None);
         };
-        let lessons = Lessons {
+        let data = TrainingData {
             recording: self.recording,
             presses: pairs,
             places: self.places,
@@ -203,7 +203,7 @@ impl Bench<'_> {
             block_mm,
             scale,
         };
-        calibrate(&lessons, &fold.split, variant)
+        calibrate(&data, &fold.split, variant)
     }
 
     /// Adds the contact heights of files without training presses. Returns the presses that remain
@@ -211,13 +211,13 @@ impl Bench<'_> {
     fn touch_new_files(
         &self,
         fold: &Fold,
-        teachers: &[usize],
+        training: &[usize],
         tables: &[DepthTable],
         twin: &Twin,
         fitted: &mut BenchEstimate,
     ) -> Result<Vec<usize>, DigitacError> {
         let file = |&press: &usize| &self.recording.presses[press].mounting;
-        let known: BTreeSet<&String> = teachers.iter().map(file).collect();
+        let known: BTreeSet<&String> = training.iter().map(file).collect();
         let files: BTreeSet<&String> = fold.split.test.iter().map(file).collect();
         let mut test = fold.split.test.clone();
         for file in files.difference(&known) {

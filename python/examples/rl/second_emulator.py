@@ -4,7 +4,7 @@ elements, and a sensor whose variation was in no training.
 twintac record --lab default --at-once --protocol protocols/hold-force.toml --out runs/hold-force
 python python/examples/rl/train.py --task HoldForce --seed 1 --out runs/rl
 python python/examples/rl/train.py --task HoldForce --seed 1 --perfect --out runs/rl
-python python/examples/rl/second_reality.py --policies runs/rl --seeds 1 \\
+python python/examples/rl/second_emulator.py --policies runs/rl --seeds 1 \\
     --recording runs/hold-force/recordings/presses.parquet
 
 Each recorded press gives force and readings over depth, from its slow approach; as in the task, a
@@ -30,7 +30,7 @@ Double = npt.NDArray[np.float64]
 HEIGHT_MM = 8.5
 DEPTHS_MM = np.arange(0.0, 3.101, 0.05)
 N_STEPS, N_SAME = 220, 55
-NOISE_KPA, QUANTUM_KPA = 0.015, 0.01  # realities/default.toml, sensors/phystac.toml
+NOISE_KPA, QUANTUM_KPA = 0.015, 0.01  # emulators/default.toml, sensors/phystac.toml
 EPISODES_A_PRESS = 32
 
 
@@ -118,7 +118,7 @@ def main() -> None:
     arguments.add_argument("--recording", type=Path, required=True)
     arguments.add_argument("--policies", type=Path, required=True, help="folder that train.py wrote")
     arguments.add_argument("--seeds", type=int, nargs="+", required=True, help="seeds that were trained with")
-    arguments.add_argument("--out", type=Path, default=Path("runs/rl/second_reality.csv"))
+    arguments.add_argument("--out", type=Path, default=Path("runs/rl/second_emulator.csv"))
     given = arguments.parse_args()
     recording = Recording.load(given.recording)
     bench = Bench(recording)

@@ -43,7 +43,7 @@ pub(crate) struct Watched {
 }
 
 /// Sensor, models and maps for the evaluation.
-pub(crate) struct Judge {
+pub(crate) struct Evaluator {
     taxels_mm: Vec<DVec2>,
     places_mm: Vec<DVec2>,
     height_mm: f64,
@@ -53,7 +53,7 @@ pub(crate) struct Judge {
     times: Vec<(f64, bool)>,
 }
 
-impl Judge {
+impl Evaluator {
     pub(crate) fn new(
         sensor: &Sensor,
         gel: &FastGel,

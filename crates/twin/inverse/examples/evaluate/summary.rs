@@ -9,7 +9,7 @@ use crate::held::Watched;
 
 /// The complete result.
 #[derive(Serialize)]
-pub(crate) struct Judgement {
+pub(crate) struct Evaluation {
     pub(crate) command: String,
     pub(crate) provenance: String,
     pub(crate) sensor: String,

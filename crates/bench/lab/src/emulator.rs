@@ -7,29 +7,29 @@ use twintac_config::{Checked, ConfigError, Ranges};
 /// drawn once per bench or per press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Reality {
+pub struct EmulatorConfiguration {
     /// Description of this configuration for people.
     pub summary: String,
     /// Seed of the cast and of every press.
     pub seed: u64,
     /// The gel as it was cast.
-    pub gel: GelReality,
+    pub gel: EmulatedGel,
     /// The barometers and their clock.
-    pub readout: ReadoutReality,
+    pub readout: EmulatedReadout,
     /// The robot and the force sensor.
-    pub robot: RobotReality,
+    pub robot: EmulatedRobot,
     /// The installation of the sensor under the robot. Default: level.
     #[serde(default)]
-    pub mounting: MountingReality,
+    pub mounting: EmulatedInstallation,
     /// The temperature of the sensor. Default: always 25 °C.
     #[serde(default)]
-    pub climate: ClimateReality,
+    pub climate: EmulatedClimate,
 }
 
 /// The gel as it was cast, and the resolution of its computation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct GelReality {
+pub struct EmulatedGel {
     /// Element edges of the emulator's own mesh over the gel's height.
     pub edges_per_height: f64,
     /// Element edges over the radius of the contact.
@@ -66,7 +66,7 @@ pub struct Relaxation {
 /// The barometers and their clock. Standard deviations are of normal distributions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ReadoutReality {
+pub struct EmulatedReadout {
     /// Mean gain of the taxels: the ratio of the reading to the pressure of the gel at the port. A
     /// cast that is badly bonded or has bubbles has a lower gain, a cavity that concentrates
     /// pressure has a higher one. Default 1.
@@ -105,7 +105,7 @@ pub struct ReadoutReality {
 /// The robot and the force sensor. Standard deviations are of normal distributions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RobotReality {
+pub struct EmulatedRobot {
     /// Standard deviation of a press's location along x and y, mm.
     pub place_deviation_mm: f64,
     /// Depth by which every press is deeper than commanded, because the surface is not where it was
@@ -123,7 +123,7 @@ pub struct RobotReality {
 /// sensor is rotated about the middle of its top, where the robot was set up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MountingReality {
+pub struct EmulatedInstallation {
     /// Rotation about the bench's x and y axes, rad.
     pub tilt_rad: [f64; 2],
 }
@@ -132,7 +132,7 @@ pub struct MountingReality {
 /// of a robot above it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct ClimateReality {
+pub struct EmulatedClimate {
     /// Temperature at power-up, °C.
     pub start_c: f64,
     /// Final temperature rise, K.
@@ -141,7 +141,7 @@ pub struct ClimateReality {
     pub warming_time_s: f64,
 }
 
-impl Default for ClimateReality {
+impl Default for EmulatedClimate {
     /// Always 25 °C.
     fn default() -> Self {
         Self {
@@ -152,7 +152,7 @@ impl Default for ClimateReality {
     }
 }
 
-impl ClimateReality {
+impl EmulatedClimate {
     /// Temperature rise since power-up, K, at a time since power-up, s.
     pub(crate) fn warmed_k(&self, time_s: f64) -> f64 {
         -self.warming_k * (-time_s / self.warming_time_s).exp_m1()
@@ -166,7 +166,7 @@ fn one() -> f64 {
     1.0
 }
 
-impl Reality {
+impl EmulatorConfiguration {
     /// Reads an emulator configuration from the text of a TOML file. Errors name file, line and
     /// field.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
@@ -174,7 +174,7 @@ impl Reality {
     }
 }
 
-impl Checked for Reality {
+impl Checked for EmulatorConfiguration {
     fn check(&self, ranges: &mut Ranges) {
         let Self {
             summary: _,
@@ -193,7 +193,7 @@ impl Checked for Reality {
     }
 }
 
-impl Checked for GelReality {
+impl Checked for EmulatedGel {
     fn check(&self, ranges: &mut Ranges) {
         let Self {
             edges_per_height,
@@ -225,7 +225,7 @@ impl Checked for GelReality {
     }
 }
 
-impl Checked for ReadoutReality {
+impl Checked for EmulatedReadout {
     fn check(&self, ranges: &mut Ranges) {
         let Self {
             gain_mean,
@@ -262,7 +262,7 @@ impl Checked for ReadoutReality {
     }
 }
 
-impl Checked for RobotReality {
+impl Checked for EmulatedRobot {
     fn check(&self, ranges: &mut Ranges) {
         let Self {
             place_deviation_mm,
@@ -279,14 +279,14 @@ impl Checked for RobotReality {
     }
 }
 
-impl Checked for MountingReality {
+impl Checked for EmulatedInstallation {
     fn check(&self, ranges: &mut Ranges) {
         let Self { tilt_rad } = self;
         ranges.numbers("tilt_rad", tilt_rad, 2, -LARGEST_TILT_RAD..=LARGEST_TILT_RAD);
     }
 }
 
-impl Checked for ClimateReality {
+impl Checked for EmulatedClimate {
     fn check(&self, ranges: &mut Ranges) {
         let Self {
             start_c,
@@ -307,33 +307,33 @@ impl Checked for ClimateReality {
 mod tests {
     use super::*;
 
-    const SHIPPED: &str = include_str!("../../../../realities/default.toml");
+    const SHIPPED: &str = include_str!("../../../../emulators/default.toml");
 
-    const HARDER: &str = include_str!("../../../../realities/harder.toml");
-    const THICKER: &str = include_str!("../../../../realities/thicker.toml");
+    const HARDER: &str = include_str!("../../../../emulators/harder.toml");
+    const THICKER: &str = include_str!("../../../../emulators/thicker.toml");
 
     #[test]
-    fn the_shipped_realities_are_valid() {
+    fn the_shipped_configurations_are_valid() {
         for text in [SHIPPED, HARDER, THICKER] {
-            Reality::parse("shipped.toml", text).unwrap();
+            EmulatorConfiguration::parse("shipped.toml", text).unwrap();
         }
     }
 
     #[test]
     fn a_file_that_names_no_further_imperfection_has_none() {
-        let reality = Reality::parse("default.toml", SHIPPED).unwrap();
-        assert_eq!(reality.mounting, MountingReality::default());
-        assert_eq!((reality.gel.height_ratio, reality.gel.friction), (1.0, 0.0));
+        let emulator = EmulatorConfiguration::parse("default.toml", SHIPPED).unwrap();
+        assert_eq!(emulator.mounting, EmulatedInstallation::default());
+        assert_eq!((emulator.gel.height_ratio, emulator.gel.friction), (1.0, 0.0));
         assert_eq!(
-            (reality.readout.bubble_mm3, reality.readout.bubble_deviation_mm3),
+            (emulator.readout.bubble_mm3, emulator.readout.bubble_deviation_mm3),
             (0.0, 0.0)
         );
     }
 
     #[test]
     fn the_thicker_gel_is_the_default_one_but_for_its_height_and_stiffness() {
-        let mut thicker = Reality::parse("thicker.toml", THICKER).unwrap();
-        let default = Reality::parse("default.toml", SHIPPED).unwrap();
+        let mut thicker = EmulatorConfiguration::parse("thicker.toml", THICKER).unwrap();
+        let default = EmulatorConfiguration::parse("default.toml", SHIPPED).unwrap();
         assert_eq!(thicker.gel.height_ratio, 1.2);
         for (thicker, default) in thicker.gel.yeoh_kpa.iter().zip(default.gel.yeoh_kpa) {
             assert!((thicker - 1.2 * default).abs() < 1e-12);
@@ -359,7 +359,8 @@ mod tests {
             ("-0.015]", "nan]", "mounting.tilt_rad[1]"),
         ] {
             assert!(HARDER.contains(right), "{right}");
-            let error = Reality::parse("harder.toml", &HARDER.replace(right, wrong)).unwrap_err();
+            let error =
+                EmulatorConfiguration::parse("harder.toml", &HARDER.replace(right, wrong)).unwrap_err();
             assert_eq!(error.field, field);
         }
     }
@@ -367,7 +368,9 @@ mod tests {
     #[test]
     fn a_gel_that_relaxes_to_nothing_is_refused() {
         let text = SHIPPED.replace("weight = 0.06", "weight = 0.96");
-        let error = Reality::parse("default.toml", &text).unwrap_err().to_string();
+        let error = EmulatorConfiguration::parse("default.toml", &text)
+            .unwrap_err()
+            .to_string();
         assert!(
             error.contains("gel.relaxation") && error.contains("below 1"),
             "{error}"
@@ -377,13 +380,13 @@ mod tests {
     #[test]
     fn a_bench_without_a_climate_keeps_its_temperature() {
         let (before, _) = SHIPPED.split_once("[climate]").unwrap();
-        let reality = Reality::parse("default.toml", before).unwrap();
-        assert_eq!(reality.climate.warmed_k(1000.0), 0.0);
+        let emulator = EmulatorConfiguration::parse("default.toml", before).unwrap();
+        assert_eq!(emulator.climate.warmed_k(1000.0), 0.0);
     }
 
     #[test]
     fn it_warms_by_two_thirds_in_its_time_constant_and_no_further_than_said() {
-        let climate = ClimateReality {
+        let climate = EmulatedClimate {
             start_c: 20.0,
             warming_k: 3.0,
             warming_time_s: 100.0,
@@ -396,14 +399,14 @@ mod tests {
     #[test]
     fn a_temperature_that_no_register_can_say_is_refused() {
         let text = SHIPPED.replace("start_c = ", "start_c = 2");
-        let error = Reality::parse("default.toml", &text).unwrap_err();
+        let error = EmulatorConfiguration::parse("default.toml", &text).unwrap_err();
         assert_eq!(error.field, "climate.start_c");
     }
 
     #[test]
     fn a_negative_noise_is_refused_at_its_line() {
         let text = SHIPPED.replace("noise_kpa = ", "noise_kpa = -");
-        let error = Reality::parse("default.toml", &text).unwrap_err();
+        let error = EmulatorConfiguration::parse("default.toml", &text).unwrap_err();
         assert_eq!(error.field, "readout.noise_kpa");
         assert!(
             text.lines().nth(error.line - 1).unwrap().starts_with("noise_kpa"),
@@ -426,7 +429,7 @@ mod tests {
         for wrong in [-1.0, 1e300, 1e-300, 0.0, f64::NAN] {
             for (field, text) in twintac_config::with_each_number(HARDER, wrong) {
                 n_numbers += 1;
-                match Reality::parse("harder.toml", &text) {
+                match EmulatorConfiguration::parse("harder.toml", &text) {
                     Ok(_) if field == "seed" => assert_eq!(wrong, 0.0),
                     Ok(_) if wrong < 0.0 => assert!(signed.contains(&&field[..]), "{field} = {wrong}"),
                     Ok(_) => assert!(wrong < 1.0, "{field} = {wrong}"),

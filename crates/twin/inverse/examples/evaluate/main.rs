@@ -1,5 +1,5 @@
 //! Evaluates contact estimation on FEM solutions of presses on PhysTac's gel that were not used for
-//! training the surrogate: `cargo run --release -p twintac-inverse --example judge`.
+//! training the surrogate: `cargo run --release -p twintac-inverse --example evaluate`.
 //!
 //! The sensor's seven indenters press upright at random locations, to random depths, at random yaw
 //! angles, in five steps that are held. Readings are those of the FEM solution, with noise. Solved
@@ -18,8 +18,8 @@ use twintac_fast::{FastGel, training_places_mm};
 use twintac_inverse::{Inverse, InverseSettings, KnownShape};
 use twintac_sensor::SensorFile;
 
-use held::{Judge, Watched};
-use summary::{Judgement, summary};
+use held::{Evaluator, Watched};
+use summary::{Evaluation, summary};
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let sensor = SensorFile::phystac()?.sensor;
@@ -35,21 +35,21 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let start = Instant::now();
     let inverse = Inverse::of_fast_gel(&gel, &shapes, &sensor.surfaces, settings)?;
     let prepared_s = start.elapsed().as_secs_f64();
-    let mut judge = Judge::new(&sensor, &gel, &places_mm)?;
+    let mut evaluator = Evaluator::new(&sensor, &gel, &places_mm)?;
     let (mut told, mut given): (Vec<Watched>, Vec<Watched>) = (Vec::new(), Vec::new());
     for (number, press) in presses.iter().enumerate() {
-        told.extend(judge.watch(number, press, &inverse, press.shape)?);
+        told.extend(evaluator.watch(number, press, &inverse, press.shape)?);
         let own = std::slice::from_ref(&shapes[press.shape]);
         let alone = Inverse::of_fast_gel(&gel, own, &sensor.surfaces, settings)?;
-        let found = judge.watch(number, press, &alone, 0)?.into_iter();
+        let found = evaluator.watch(number, press, &alone, 0)?.into_iter();
         given.extend(found.map(|found| Watched {
             shape: press.shape,
             told: press.shape,
             ..found
         }));
     }
-    let judgement = Judgement {
-        command: "cargo run --release -p twintac-inverse --example judge".into(),
+    let evaluation = Evaluation {
+        command: "cargo run --release -p twintac-inverse --example evaluate".into(),
         provenance: "simulated".into(),
         sensor: sensor.name.clone(),
         settings,
@@ -57,9 +57,9 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
         prepared_s,
         shapes_to_tell: summary(&shapes, &told),
         shape_given: summary(&shapes, &given),
-        microseconds_a_frame: judge.microseconds(),
+        microseconds_a_frame: evaluator.microseconds(),
     };
-    let json = serde_json::to_string_pretty(&judgement)?;
+    let json = serde_json::to_string_pretty(&evaluation)?;
     println!("{json}");
     std::fs::write("docs/results/inverse.json", json + "\n")?;
     Ok(())
