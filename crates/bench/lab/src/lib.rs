@@ -8,8 +8,8 @@
 //! noise, quantization, clocks with delay and jitter, and a robot with position errors. Recordings
 //! of the emulator have the provenance `emulated`.
 //!
-//! In: the description of a sensor, an [`EmulatorConfiguration`], and planned presses or loads. Out:
-//! recordings, with times in s, poses in mm, forces in N and pressures in kPa.
+//! In: the description of a sensor, an [`EmulatorConfiguration`], and planned presses or loads.
+//! Out: recordings, with times in s, poses in mm, forces in N and pressures in kPa.
 //!
 //! - [`Lab::new`] makes one imperfect sensor. Everything random comes from the seed of the
 //!   configuration.
