@@ -1,4 +1,4 @@
-//! Words that pages no longer use (`xtask/words.toml`).
+//! Words that pages and names no longer have (`xtask/words.toml`).
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
+use crate::code::{identifiers, rust_files};
 use crate::documents::documents;
 
 const LIST: &str = "xtask/words.toml";
@@ -16,13 +17,19 @@ const LIST: &str = "xtask/words.toml";
 struct List {
     /// Each word or phrase in lower case, and what to write instead.
     gone: BTreeMap<String, String>,
+    /// Each part of a name, and what to write instead.
+    gone_names: BTreeMap<String, String>,
+}
+
+fn list(root: &Path) -> Result<List> {
+    let text = fs::read_to_string(root.join(LIST)).with_context(|| format!("reading {LIST}"))?;
+    toml::from_str(&text).context(LIST)
 }
 
 /// Each place of a page that has one of the words, and what to write instead. Code, links and what
 /// stands in backquotes is left out.
 pub fn gone_words(root: &Path) -> Result<Vec<String>> {
-    let text = fs::read_to_string(root.join(LIST)).with_context(|| format!("reading {LIST}"))?;
-    let List { gone } = toml::from_str(&text).context(LIST)?;
+    let List { gone, .. } = list(root)?;
     let mut found = Vec::new();
     for document in documents(root)? {
         let text =
@@ -37,6 +44,43 @@ pub fn gone_words(root: &Path) -> Result<Vec<String>> {
         }
     }
     Ok(found)
+}
+
+/// Each name in Rust sources that has one of the words as a part, and what to write instead. Former
+/// names of fields and options, which are still read, are strings and do not count.
+pub fn gone_names(root: &Path) -> Result<Vec<String>> {
+    let List { gone_names, .. } = list(root)?;
+    let mut found = Vec::new();
+    for path in rust_files(root, &["crates", "xtask", "fuzz", "python", "web"])? {
+        let text = fs::read_to_string(&path)?;
+        let tokens = text.parse().map_err(|error| anyhow::anyhow!("{error}"));
+        let names = identifiers(tokens.with_context(|| format!("reading {}", path.display()))?);
+        let place = path.strip_prefix(root)?.display();
+        for name in names {
+            for part in parts(&name) {
+                if let Some(instead) = gone_names.get(&part) {
+                    found.push(format!("{place}: `{name}`: write `{instead}` for `{part}`"));
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The words of a name, in lower case.
+fn parts(name: &str) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    let mut was_lower = false;
+    for letter in name.chars() {
+        if letter == '_' || (letter.is_uppercase() && was_lower) {
+            parts.push(String::new());
+        }
+        was_lower = letter.is_lowercase();
+        if let (Some(last), true) = (parts.last_mut(), letter != '_') {
+            last.extend(letter.to_lowercase());
+        }
+    }
+    parts
 }
 
 /// Lines with their numbers, without fenced blocks, code in backquotes and targets of links.
@@ -85,5 +129,13 @@ mod tests {
             .collect();
         assert_eq!(found, [1]);
         assert_eq!(lines[0].1.matches("lessons").count(), 1);
+    }
+
+    #[test]
+    fn names_consist_of_words() {
+        let of = |name: &str| parts(name).join(" ");
+        assert_eq!(of("EmulatorConfiguration"), "emulator configuration");
+        assert_eq!(of("n_trained_on"), "n trained on");
+        assert_eq!(of("BLOCK_MM"), "block mm");
     }
 }

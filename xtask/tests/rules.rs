@@ -217,6 +217,11 @@ fn of_documents(workspace: &Arc<Workspace>) -> Vec<Trial> {
             "documents::words_are_those_of_the_field".into(),
             |_, root| none(words::gone_words(root)?, "words that are not of the field"),
         ),
+        trial(
+            workspace,
+            "sources::names_are_those_of_the_field".into(),
+            |_, root| none(words::gone_names(root)?, "names that are not of the field"),
+        ),
         trial(workspace, "documents::links_lead_somewhere".into(), |_, root| {
             documents::links_lead_somewhere(root)
         }),

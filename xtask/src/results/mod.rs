@@ -1,9 +1,11 @@
 //! The tables of results, written from committed figures: the overview (`docs/results.md`, its
-//! first rows in README.md), the paper's experiments, and which sources made what.
+//! first rows in README.md), parts of pages, the paper's experiments, and which sources made what.
 
 mod overview;
 mod paper;
+mod places;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -24,7 +26,7 @@ pub fn write(root: &Path, metrics: Option<&str>) -> Result<()> {
     if let Some(path) = metrics {
         keep(root, path)?;
     }
-    for (page, text) in fresh(root)? {
+    for (page, text) in &fresh(root)? {
         fs::write(root.join(page), text).with_context(|| format!("writing {page}"))?;
     }
     figures::check(root, &figures::read(root)?)
@@ -32,9 +34,9 @@ pub fn write(root: &Path, metrics: Option<&str>) -> Result<()> {
 
 /// The pages are as [`write`] would leave them.
 pub fn is_fresh(root: &Path) -> Result<()> {
-    for (page, text) in fresh(root)? {
+    for (page, text) in &fresh(root)? {
         ensure!(
-            read(root, page)? == text,
+            read(root, page)? == *text,
             "{page} is not what the committed figures, {} and {} say: run `cargo xtask results`",
             figures::LIST,
             overview::LIST
@@ -63,21 +65,26 @@ fn keep(root: &Path, path: &str) -> Result<()> {
     figures::are_made_anew(root, KEPT, &kept.commit)
 }
 
-/// Each page, and its text with the tables written anew.
-fn fresh(root: &Path) -> Result<[(&'static str, String); 4]> {
+/// Each page, and its text with the figures written anew.
+fn fresh(root: &Path) -> Result<BTreeMap<String, String>> {
     let figures = figures::read(root)?;
     let kept: Kept = serde_json::from_str(&read(root, KEPT)?).with_context(|| format!("reading {KEPT}"))?;
-    let page = |page: &'static str, part: &str, table: &str| -> Result<(&'static str, String)> {
-        let mut text = read(root, page)?;
-        replace_part(&mut text, &format!("results: {part}"), table).context(page)?;
-        Ok((page, text))
+    let mut pages = BTreeMap::new();
+    let mut write = |page: &str, part: &str, text: &str| -> Result<()> {
+        if !pages.contains_key(page) {
+            pages.insert(page.to_owned(), read(root, page)?);
+        }
+        let own = pages.entry(page.to_owned()).or_default();
+        replace_part(own, &format!("results: {part}"), text).with_context(|| page.to_owned())
     };
-    Ok([
-        page("README.md", "readme", &overview::first_rows(root)?)?,
-        page("docs/results.md", "overview", &overview::table(root, &figures)?)?,
-        page("docs/results/paper.md", "paper", &paper::table(&kept))?,
-        page("docs/results/sources.md", "sources", &figures::table(&figures))?,
-    ])
+    write("README.md", "readme", &overview::first_rows(root)?)?;
+    write("docs/results.md", "overview", &overview::table(root, &figures)?)?;
+    write("docs/results/paper.md", "paper", &paper::table(&kept))?;
+    write("docs/results/sources.md", "sources", &figures::table(&figures))?;
+    for part in overview::parts(root)? {
+        write(&part.page, &part.name, &part.filled(root)?)?;
+    }
+    Ok(pages)
 }
 
 #[cfg(test)]

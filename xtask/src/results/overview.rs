@@ -1,13 +1,13 @@
-//! The overview of results: each row of `xtask/results.toml`, with its figures read from committed
-//! JSON.
+//! What `xtask/results.toml` lists: rows of the overview of results, and parts of pages, with their
+//! figures read from committed JSON.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result};
 use serde::Deserialize;
-use serde_json::Value;
 
+use super::places::{filled, values};
 use crate::documents::read;
 use crate::figures::Figure;
 
@@ -18,14 +18,11 @@ pub(super) const LIST: &str = "xtask/results.toml";
 #[serde(deny_unknown_fields)]
 struct List {
     result: Vec<Row>,
+    part: Vec<Part>,
 }
 
-/// A row: what was measured, its figures, and what to compare them with.
-///
-/// `figure` and `beside` have places `{NAME PATH DECIMALS}`, where `NAME` is one of `from`. A path
-/// goes down by keys, indices, or fields that an element of an array must have
-/// (`rows/held_out=place & without=null/twin`); `*` takes all elements. `mean(PATH)`, `sum(PATH)`,
-/// `min(PATH)`, `max(PATH)` and `count(PATH)` take a list together, in which `true` is 1.
+/// A row: what was measured, its figures, and what to compare them with. `figure` and `beside` have
+/// places ([`super::places`]).
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Row {
@@ -42,11 +39,38 @@ struct Row {
     readme: Option<String>,
 }
 
+/// A part of a page, between `<!-- results: NAME -->` and `<!-- end -->`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Part {
+    /// The page, from the root.
+    pub(super) page: String,
+    pub(super) name: String,
+    /// Committed files, by a short name.
+    from: BTreeMap<String, String>,
+    /// The text, with places ([`super::places`]).
+    text: String,
+}
+
+impl Part {
+    /// The text with its places filled.
+    pub(super) fn filled(&self, root: &Path) -> Result<String> {
+        let filled = values(root, &self.from).and_then(|values| filled(&self.text, &values));
+        let text = filled.with_context(|| format!("{LIST}: `{}` of {}", self.name, self.page))?;
+        Ok(format!("\n{}\n\n", text.trim()))
+    }
+}
+
+/// All parts of pages.
+pub(super) fn parts(root: &Path) -> Result<Vec<Part>> {
+    Ok(list(root)?.part)
+}
+
 /// The table of all rows.
 pub(super) fn table(root: &Path, figures: &[Figure]) -> Result<String> {
     let mut text =
         "\n| what | figure | beside it | provenance | command, commit |\n|---|---|---|---|---|\n".to_owned();
-    for row in &rows(root)? {
+    for row in &list(root)?.result {
         let line = || -> Result<String> {
             let made = made_by(figures, row)?;
             Ok(format!("{} {made} |\n", cells(root, row, &row.what, "")?))
@@ -59,7 +83,7 @@ pub(super) fn table(root: &Path, figures: &[Figure]) -> Result<String> {
 /// The rows for README.md.
 pub(super) fn first_rows(root: &Path) -> Result<String> {
     let mut text = "\n| what | figure | beside it | provenance |\n|---|---|---|---|\n".to_owned();
-    for row in &rows(root)? {
+    for row in &list(root)?.result {
         if let Some(what) = &row.readme {
             let cells = cells(root, row, what, "docs/").with_context(|| format!("{LIST}: `{what}`"))?;
             text += &format!("{cells}\n");
@@ -68,19 +92,13 @@ pub(super) fn first_rows(root: &Path) -> Result<String> {
     Ok(text + "\n")
 }
 
-fn rows(root: &Path) -> Result<Vec<Row>> {
-    let List { result } = toml::from_str(&read(root, LIST)?).context(LIST)?;
-    Ok(result)
+fn list(root: &Path) -> Result<List> {
+    toml::from_str(&read(root, LIST)?).context(LIST)
 }
 
 /// A row without the command; `docs` is the way from the page to `docs`.
 fn cells(root: &Path, row: &Row, what: &str, docs: &str) -> Result<String> {
-    let mut values = BTreeMap::new();
-    for (name, file) in &row.from {
-        let value: Value =
-            serde_json::from_str(&read(root, file)?).with_context(|| format!("reading {file}"))?;
-        values.insert(name.as_str(), value);
-    }
+    let values = values(root, &row.from)?;
     let Row { page, provenance, .. } = row;
     let (figure, beside) = (filled(&row.figure, &values)?, filled(&row.beside, &values)?);
     Ok(format!(
@@ -102,163 +120,4 @@ fn made_by(figures: &[Figure], row: &Row) -> Result<String> {
         format!("`{command}`, {}", commits.join(", "))
     });
     Ok(each.collect::<Vec<_>>().join("; "))
-}
-
-/// A text with its places filled.
-fn filled(text: &str, values: &BTreeMap<&str, Value>) -> Result<String> {
-    let mut filled = String::new();
-    let mut rest = text;
-    while let Some((before, after)) = rest.split_once('{') {
-        let (place, after) = after
-            .split_once('}')
-            .with_context(|| format!("`{text}`: a place has no end"))?;
-        filled += before;
-        filled += &number(place, values).with_context(|| format!("the place `{{{place}}}`"))?;
-        rest = after;
-    }
-    Ok(filled + rest)
-}
-
-/// The number of one place.
-fn number(place: &str, values: &BTreeMap<&str, Value>) -> Result<String> {
-    let (name, rest) = place.split_once(' ').context("has no path")?;
-    let (path, decimals) = rest.rsplit_once(' ').context("has no decimals")?;
-    let decimals: usize = decimals.parse().context("decimals")?;
-    let value = values
-        .get(name)
-        .with_context(|| format!("`{name}` is not in `from`"))?;
-    let (how, path) = match path.strip_suffix(')').and_then(|path| path.split_once('(')) {
-        Some((how, path)) => (how, path),
-        None => ("", path),
-    };
-    let found: Vec<&Value> = found(value, path)?
-        .into_iter()
-        .flat_map(|value| match value {
-            Value::Array(values) => values.iter().collect(),
-            value => vec![value],
-        })
-        .collect();
-    let number = if how == "count" {
-        found.len() as f64
-    } else {
-        let numbers: Vec<f64> = found.into_iter().map(as_number).collect::<Result<_>>()?;
-        taken_together(how, &numbers)?
-    };
-    Ok(grouped(&format!("{number:.decimals$}")))
-}
-
-/// A number whose thousands are separated, from five digits on.
-fn grouped(number: &str) -> String {
-    let (whole, rest) = number
-        .split_once('.')
-        .map_or((number, String::new()), |(whole, part)| {
-            (whole, format!(".{part}"))
-        });
-    if whole.trim_start_matches('-').len() < 5 {
-        return number.to_owned();
-    }
-    let n = whole.len();
-    let digits = whole.chars().enumerate().map(|(at, digit)| {
-        let is_first = at == 0 || (n - at) % 3 != 0 || &whole[..at] == "-";
-        if is_first {
-            digit.to_string()
-        } else {
-            format!(",{digit}")
-        }
-    });
-    digits.collect::<String>() + &rest
-}
-
-fn as_number(value: &Value) -> Result<f64> {
-    match value {
-        Value::Bool(is) => Ok(f64::from(u8::from(*is))),
-        value => value.as_f64().with_context(|| format!("{value} is no number")),
-    }
-}
-
-fn taken_together(how: &str, numbers: &[f64]) -> Result<f64> {
-    ensure!(!numbers.is_empty(), "nothing is found");
-    Ok(match how {
-        "" => {
-            ensure!(numbers.len() == 1, "{} numbers, not one", numbers.len());
-            numbers[0]
-        }
-        "mean" => numbers.iter().sum::<f64>() / numbers.len() as f64,
-        "sum" => numbers.iter().sum(),
-        "min" => numbers.iter().copied().fold(f64::INFINITY, f64::min),
-        "max" => numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        _ => bail!("there is no `{how}`"),
-    })
-}
-
-/// What a path leads to.
-fn found<'a>(value: &'a Value, path: &str) -> Result<Vec<&'a Value>> {
-    let mut at = vec![value];
-    for step in path.split('/') {
-        let mut next = Vec::new();
-        for value in at {
-            match value {
-                Value::Array(values) if step == "*" => next.extend(values),
-                Value::Array(values) if step.contains('=') => {
-                    next.extend(values.iter().find(|value| has(value, step)));
-                }
-                Value::Array(values) => {
-                    next.extend(step.parse().ok().and_then(|index: usize| values.get(index)))
-                }
-                value => next.extend(value.get(step)),
-            }
-        }
-        ensure!(!next.is_empty(), "there is no `{step}`");
-        at = next;
-    }
-    Ok(at)
-}
-
-/// Whether a value has all of the fields, written `KEY=VALUE & KEY=VALUE`.
-fn has(value: &Value, fields: &str) -> bool {
-    let shown = |value: &Value| match value {
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    };
-    fields.split(" & ").all(|field| {
-        let field = field.split_once('=');
-        field.is_some_and(|(key, wanted)| shown(&value[key]) == wanted)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn values() -> BTreeMap<&'static str, Value> {
-        let value = serde_json::json!({
-            "rows": [{"by": "place", "n": 1, "error": 0.951}, {"by": "file", "n": 1, "error": 3.0}],
-            "seeds": [1.0, 2.0, 6.0], "lifted": [{"is": true}, {"is": false}],
-        });
-        BTreeMap::from([("a", value)])
-    }
-
-    #[test]
-    fn places_are_filled() {
-        let text = "{a rows/by=place & n=1/error 2} %, {a mean(seeds) 1}, {a sum(lifted/*/is) 0} of {a count(lifted) 0}";
-        assert_eq!(filled(text, &values()).unwrap(), "0.95 %, 3.0, 1 of 2");
-        assert_eq!(
-            ["1234", "515564", "-51556.4"].map(grouped),
-            ["1234", "515,564", "-51,556.4"]
-        );
-    }
-
-    #[test]
-    fn what_is_not_there_is_an_error() {
-        for (text, says) in [
-            ("{a rows/by=press/error 2}", "there is no `by=press`"),
-            ("{b seeds 2}", "`b` is not in `from`"),
-            ("{a seeds 2}", "3 numbers"),
-            ("{a rows/0/by 2}", "is no number"),
-            ("{a seeds", "has no end"),
-        ] {
-            let error = format!("{:#}", filled(text, &values()).unwrap_err());
-            assert!(error.contains(says), "{error}");
-        }
-    }
 }

@@ -3,7 +3,7 @@
 //!
 //! With `--rewrite`, nothing is measured: page and picture are written from the stored figures.
 //! With `--steps BODY N`, sensors with relaxation and all deviations are only stepped on one
-//! thread, for a profiler; BODY is `ball`, `box` or `boulder`.
+//! thread, for a profiler; BODY is `ball`, `box` or `random-mesh`.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         [] => measure()?,
         ["--rewrite"] => serde_json::from_str(&fs::read_to_string(&figures)?)?,
         ["--steps", body, n_steps] => return steps(body, n_steps.parse()?),
-        _ => return Err("usage: rate [--rewrite | --steps <ball | box | boulder> N]".into()),
+        _ => return Err("usage: rate [--rewrite | --steps <ball | box | random-mesh> N]".into()),
     };
     let json = serde_json::to_string_pretty(&results)? + "\n";
     write_whole(&figures, json.as_bytes())?;
@@ -132,7 +132,7 @@ fn steps(body: &str, n_steps: usize) -> Result<(), Box<dyn Error>> {
     let kind = match body {
         "ball" => Kind::Ball,
         "box" => Kind::Box,
-        "boulder" => Kind::Boulder,
+        "random-mesh" => Kind::RandomMesh,
         _ => return Err(format!("there is no body `{body}`").into()),
     };
     let twin = invented::twin(Variant::PressureMemory, N_TAXELS)?;

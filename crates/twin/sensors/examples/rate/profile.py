@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 
 COMMAND = "python3 crates/twin/sensors/examples/rate/profile.py"
-BODIES = {"ball": "ball", "box": "box", "boulder": "closed surface"}
+BODIES = {"ball": "ball", "box": "box", "random-mesh": "closed surface"}
 N_STEPS, N_SENSORS = 2, 1024
 LEAST_PERCENT = 1.0
 TABLES = ["twintac-fast", "twintac-sensors", "twintac-random", "digitac"]

@@ -48,17 +48,17 @@ tilt_deviation_rad = 0.01
 pub(crate) enum Kind {
     Ball,
     Box,
-    Boulder,
+    RandomMesh,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 3] = [Self::Ball, Self::Box, Self::Boulder];
+    pub(crate) const ALL: [Self; 3] = [Self::Ball, Self::Box, Self::RandomMesh];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Ball => "ball, 12 mm",
             Self::Box => "box, 12 × 8 × 10 mm",
-            Self::Boulder => "closed surface, 20,000 triangles",
+            Self::RandomMesh => "closed surface, 20,000 triangles",
         }
     }
 
@@ -69,9 +69,9 @@ impl Kind {
                 size_mm: [12.0, 8.0, 10.0],
                 edge_radius_mm: 0.5,
             },
-            Self::Boulder => {
+            Self::RandomMesh => {
                 let surfaces = twintac_fem_presses::test_surfaces()?;
-                let (path, _) = surfaces.iter().next().ok_or("no boulder")?;
+                let (path, _) = surfaces.iter().next().ok_or("no random mesh")?;
                 let shape = Shape::Stl(SurfaceFile::new(path));
                 return Ok(Body::new(&shape, &surfaces)?);
             }
