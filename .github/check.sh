@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks the files for the forge with linters, and the versions of all packages.
+# Checks the files for the forge with linters, the versions of all packages, and the licences of the
+# code of others.
 # Installs `check-jsonschema` and `yamllint` into the given virtual environment.
 set -euo pipefail
 python=${1:?usage: .github/check.sh VENV/bin/python}
@@ -17,3 +18,5 @@ schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/{bug,sensor-or-chip}.yml
 schema vendor.citation-file-format CITATION.cff
 "$python" -m yamllint --strict --config-file .github/yamllint.yml .github CITATION.cff
 "$python" .github/check_versions.py
+"$python" .github/licences.py
+"$python" .github/licences.py --manifest-path web/engine/Cargo.toml

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that all packages of the repository have one version, and that links name one repository.
+"""Checks that all packages of the repository have one version, licences, and links to one repository.
 
     python3 .github/check_versions.py                        before a commit
     python3 .github/check_versions.py --tag v0.1.0           before a release: also the tag
@@ -22,6 +22,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 PLACEHOLDER = "example.org"
+LICENCES = ("LICENSE-APACHE", "LICENSE-MIT")
 LOCK_FILES = ("Cargo.lock", "firmware/Cargo.lock", "fuzz/Cargo.lock", "web/engine/Cargo.lock")
 LINKING_FILES = (
     "CITATION.cff",
@@ -29,7 +30,17 @@ LINKING_FILES = (
     "python/pyproject.toml",
     ".github/ISSUE_TEMPLATE/config.yml",
     ".github/ISSUE_TEMPLATE/sensor-or-chip.yml",
+    "web/package/package.json",
+    "SECURITY.md",
 )
+# What must not stand in a file when a release is made, and what must.
+UNRELEASED = ("is released yet", "There is none yet", "is not published yet")
+UNRELEASED_FILES = ("CHANGELOG.md", "VERSIONING.md", "SECURITY.md", "crates/app/twintac/README.md", "crates/app/twintac/src/lib.rs")
+INSTALLS = {
+    "python/README.md": "pip install twintac",
+    "docs/index.md": "pip install twintac",
+    "crates/app/twintac/README.md": "twintac = \"",
+}
 
 
 def text(file: str) -> str:
@@ -49,7 +60,7 @@ def versions() -> Iterator[tuple[str, str]]:
     """Where a version is stated, and the version."""
     for name, wanted in toml("Cargo.toml")["workspace"]["dependencies"].items():
         if isinstance(wanted, dict) and "path" in wanted:
-            yield f"Cargo.toml, dependency {name}", wanted.get("version", "none")
+            yield f"Cargo.toml, dependency {name}", wanted.get("version", "none").removeprefix("=")
     yield "firmware/Cargo.toml", toml("firmware/Cargo.toml")["workspace"]["package"]["version"]
     for file in ("fuzz/Cargo.toml", "web/engine/Cargo.toml"):
         yield file, toml(file)["package"]["version"]
@@ -59,10 +70,19 @@ def versions() -> Iterator[tuple[str, str]]:
                 yield f"{file}, package {package['name']}", package["version"]
     for file in ("web/package.json", "web/package/package.json", "web/package-lock.json"):
         yield file, json.loads(text(file))["version"]
+    yield "web/package-lock.json, first package", json.loads(text("web/package-lock.json"))["packages"][""]["version"]
     yield "web/tests/package.test.mjs, archive", found(r"\btwintac-(\d[^\"]*)\.tgz", text("web/tests/package.test.mjs"))
     yield "python/lerobot/pyproject.toml", toml("python/lerobot/pyproject.toml")["project"]["version"]
     yield "CITATION.cff", found(r"^version: *['\"]?([^'\"\s]+)", text("CITATION.cff"))
     yield "CHANGELOG.md, first heading of a version", changelog()[0]
+
+
+def published_crates() -> Iterator[str]:
+    """The folders of the crates that are published."""
+    for manifest in sorted(ROOT.glob("crates/*/*/Cargo.toml")):
+        folder = str(manifest.parent.relative_to(ROOT))
+        if toml(f"{folder}/Cargo.toml")["package"].get("publish") is not False:
+            yield folder
 
 
 def found(pattern: str, where: str) -> str:
@@ -84,6 +104,14 @@ def differences(tag: str | None) -> Iterator[str]:
         if stated != version:
             yield f"{place}: the version is {stated}, in Cargo.toml it is {version}"
 
+    for name, wanted in toml("Cargo.toml")["workspace"]["dependencies"].items():
+        if isinstance(wanted, dict) and "path" in wanted and not wanted.get("version", "").startswith("="):
+            yield f"Cargo.toml, dependency {name}: write `=` before the version, because internal crates may change in a patch"
+    for folder in published_crates():
+        for licence in LICENCES:
+            if not (ROOT / folder / licence).is_file():
+                yield f"{folder}: has no {licence}; make a symbolic link to that of the repository"
+
     project = toml("python/pyproject.toml")["project"]
     crate = toml("python/Cargo.toml")
     if "version" not in project.get("dynamic", []) or crate["package"]["version"] != {"workspace": True}:
@@ -95,7 +123,7 @@ def differences(tag: str | None) -> Iterator[str]:
     for file in LINKING_FILES:
         links = re.findall(r"https://[^\s\"'<>)]+", text(file))
         links = [link for link in links if "twintac" in link or PLACEHOLDER in link]
-        wrong = [link for link in links if link != repository and not link.startswith(repository + "/")]
+        wrong = [link for link in links if link.removesuffix(".git") != repository and not link.startswith(repository + "/")]
         yield from (f"{file}: {link} is not below {repository}, the repository of Cargo.toml" for link in wrong)
 
     if tag is not None:
@@ -108,9 +136,12 @@ def differences(tag: str | None) -> Iterator[str]:
             yield f"CITATION.cff: `date-released` is {cited}, the date in CHANGELOG.md is {date}"
         if PLACEHOLDER in repository:
             yield f"Cargo.toml: the repository is still the placeholder {repository}"
-        for file in ("CHANGELOG.md", "VERSIONING.md", "SECURITY.md"):
-            if "is released yet" in text(file) or "There is none yet" in text(file):
+        for file in UNRELEASED_FILES:
+            if any(words in text(file) for words in UNRELEASED):
                 yield f"{file}: says that nothing is released yet"
+        for file, words in INSTALLS.items():
+            if words not in text(file):
+                yield f"{file}: does not say how to install the released package: `{words}`"
 
 
 def oldest_python() -> str:

@@ -3,12 +3,14 @@
 
     python3 .github/prepare_python.py REPOSITORY-URL TAG
 
-Copies the licences beside pyproject.toml, from where maturin takes them, and makes the relative
-links of README.md absolute, because index pages show it without the repository.
+Copies the licences beside pyproject.toml, from where maturin takes them, with those of the code of
+others (`licences.py`), and makes the relative links of README.md absolute, because index pages show
+it without the repository.
 """
 
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 from posixpath import normpath
@@ -33,6 +35,8 @@ def absolute(readme: str, repository: str, tag: str) -> str:
 def main(repository: str, tag: str) -> None:
     for licence in ROOT.glob("LICENSE-*"):
         shutil.copy(licence, ROOT / "python")
+    others = ROOT / "python/LICENCES-THIRD-PARTY.txt"
+    subprocess.run([sys.executable, ROOT / ".github/licences.py", "--out", others], check=True)
     readme = ROOT / "python/README.md"
     readme.write_text(absolute(readme.read_text(encoding="utf-8"), repository.rstrip("/"), tag), encoding="utf-8", newline="\n")
 

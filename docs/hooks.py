@@ -130,6 +130,8 @@ def fields(path: str, name: str) -> str:
     meaning: list[str] = []
     attributes = ""
     is_enum = found[1] == "enum"
+    of_all = re.search(r"(?:^#\[.*\]\n)*\Z", source[: found.start()], flags=re.M)
+    all_optional = bool(of_all) and bool(re.search(r"#\[serde\([^\]]*\bdefault\b", of_all[0]))
     for line in map(str.strip, found[2].splitlines()):
         field = re.fullmatch(r"(?:pub(?:\(crate\))? )?(\w+): (.+),", line)
         variant = re.fullmatch(r"(\w+)(?: \{|\((\w+)\),|,)", line)
@@ -139,7 +141,7 @@ def fields(path: str, name: str) -> str:
             attributes += line
         elif field or (variant and is_enum):
             label = renamed(attributes) or (field[1] if field else kebab(variant[1] if variant else ""))
-            kind = toml_type(field[2], "default" in attributes) if field else "kind"
+            kind = toml_type(field[2], all_optional or "default" in attributes) if field else "kind"
             indent = "&emsp;" if field and is_enum else ""
             rows.append(f"| {indent}`{label}` | {kind} | {markdown_of(' '.join(meaning))} |")
         if not line.startswith(("///", "#[")):
@@ -178,7 +180,8 @@ def toml_type(rust: str, can_be_left_out: bool) -> str:
 
 def markdown_of(doc: str) -> str:
     """A doc comment without Rust's links to types."""
-    text = re.sub(r"\[`(?:\w+::)*(\w+)`\](?:\([^)]*\))?", r"`\1`", doc)
+    text = re.sub(r"\[`(?:\w+::)*([A-Z]\w+)::([a-z]\w+)`\](?:\([^)]*\))?", r"`\2` of `\1`", doc)
+    text = re.sub(r"\[`(?:\w+::)*(\w+)`\](?:\([^)]*\))?", r"`\1`", text)
     return cell(text)
 
 

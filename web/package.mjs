@@ -35,5 +35,8 @@ export declare function load(wasm?: BufferSource): Promise<Engine>;
 `;
 writeFileSync(join(folder, "index.d.ts"), engine + added);
 for (const file of ["package.json", "README.md", "example.html"]) copyFileSync(join(here, "package", file), join(folder, file));
+for (const file of ["LICENSE-APACHE", "LICENSE-MIT"]) copyFileSync(join(here, "..", file), join(folder, file));
+const licences = ["../.github/licences.py", "--manifest-path", "engine/Cargo.toml", "--out", join(folder, "LICENCES-THIRD-PARTY.txt")];
+execFileSync("python3", licences, { cwd: here, stdio: ["ignore", "ignore", "inherit"] });
 copyFileSync(module, join(folder, "twintac.wasm"));
 execFileSync("npm", ["pack", "--silent"], { cwd: folder, stdio: ["ignore", "inherit", "inherit"] });

@@ -207,7 +207,7 @@ def page(results: dict[str, Any]) -> str:
         for name, own in row.items()
     ]
     slope = "; ".join(
-        f"{name}: {100 * own['within_2_percent']:.1f} %, {own['no_numbers']} that are no number" for name, own in results["slopes"].items()
+        f"{name}: {100 * own['within_2_percent']:.1f} %, {own['no_numbers']} are NaN" for name, own in results["slopes"].items()
     )
     versions = ", ".join(f"{name} {version}" for name, version in results["libraries"].items())
     is_busy = machine["load_average"] > machine["processors"]
@@ -219,14 +219,14 @@ def page(results: dict[str, Any]) -> str:
             f"Made by `{results['command']}` on {machine['processor']}, {machine['processors']} processors, without a GPU (simulated data): {versions}. Load average at the end: "
             f"{machine['load_average']:.1f}{busy}. Rates on a GPU have not been measured.",
             "",
-            f"Beside Rust's `FastBatch`, on {results['beside_rust']['phystac']['contacts']:,} random contacts of one to three bodies of all shapes: largest errors, and how many contacts differ by "
-            f"more than {WITHIN:g} of the largest. Where Rust's readings jump, rounding decides on which side of the jump a contact is.",
+            f"The table has the largest differences from Rust's `FastBatch` on {results['beside_rust']['phystac']['contacts']:,} random contacts of one to three bodies of all shapes, "
+            f"and the number of contacts that differ by more than {WITHIN:g} of the largest. Where Rust's readings jump, rounding decides on which side of the jump a contact is.",
             "",
             "| sensor | library | pressure, kPa | of the largest pressure | of the largest of the wrench | contacts beyond |",
             "|---|---|---:|---:|---:|---:|",
             *rows,
             "",
-            f"Gradients along random ways beside central differences, {next(iter(results['slopes'].values()))['contacts']:,} contacts of two bodies, how many are within 2 %: {slope}.",
+            f"Gradients are compared with central differences along random directions, on {next(iter(results['slopes'].values()))['contacts']:,} contacts of two bodies. Within 2 %: {slope}.",
             "",
             "One body on each sensor. Processor time counts all threads.",
             "",

@@ -26,12 +26,12 @@ on_device = mjx.put_model(model)
 sensors = touch.put(model, ["palm"], geoms=["block"])
 
 data = jax.vmap(lambda _: mjx.make_data(on_device))(jax.numpy.arange(N_WORLDS))
-memory = jax.vmap(sensors.begin, in_axes=(None, 0))(on_device, data)
+gel_state = jax.vmap(sensors.begin, in_axes=(None, 0))(on_device, data)
 step = jax.jit(jax.vmap(sensors.step, in_axes=(None, 0, 0)))
 for _ in range(N_STEPS):
-    data, memory, felt = step(on_device, data, memory)
+    data, gel_state, reading = step(on_device, data, gel_state)
 
-for taxel, pressure_kpa in zip(Sensor.phystac().taxels, felt.pressure_kpa[0, 0]):
+for taxel, pressure_kpa in zip(Sensor.phystac().taxels, reading.pressure_kpa[0, 0]):
     print(f"{taxel} {float(pressure_kpa):6.2f} kPa")
-force_n = -felt.wrench[:, 0, 2]
+force_n = -reading.wrench[:, 0, 2]
 print(f"{float(force_n.min()):.3f} to {float(force_n.max()):.3f} N in {N_WORLDS} worlds, of {9.81 * MASS_KG:.3f} N, simulated")

@@ -56,4 +56,4 @@ def _put(lines: list[str], node: ast.ClassDef | ast.FunctionDef, doc: str) -> No
 
 
 if __name__ == "__main__":
-    STUBS.write_text(documented(STUBS.read_text()))
+    STUBS.write_text(documented(STUBS.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")

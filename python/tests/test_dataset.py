@@ -34,7 +34,7 @@ def test_shards_merge_to_what_one_process_makes(tmp_path: Path) -> None:
     assert Dataset.check(tmp_path / "parts")["rows"] == whole["rows"]
     words = ("dataset", "--fast", "--presses", 12, "--seed", 5, "--out", tmp_path / "by-command")
     assert run_command(*words).returncode == 0
-    assert (tmp_path / "by-command/dataset.toml").read_text() == fast().identity
+    assert (tmp_path / "by-command/dataset.toml").read_text(encoding="utf-8") == fast().identity
 
 
 def test_a_shard_is_a_recording(tmp_path: Path) -> None:
@@ -113,7 +113,7 @@ def test_a_recording_is_written_as_lerobot_reads_it(tmp_path: Path) -> None:
     n_frames = len(columns["time_s"])
     assert written == {"episodes": 12, "frames": n_frames, "tasks": 7, "fps": 55, "resampled_from_hz": None}
 
-    info = json.loads((folder / "meta/info.json").read_text())
+    info = json.loads((folder / "meta/info.json").read_text(encoding="utf-8"))
     assert info["codebase_version"] == "v3.0" and info["fps"] == 55
     assert (info["total_episodes"], info["total_frames"], info["splits"]) == (12, n_frames, {"train": "0:12"})
 
@@ -142,7 +142,7 @@ def test_a_recording_is_written_as_lerobot_reads_it(tmp_path: Path) -> None:
     assert list(of_frames) == list(columns["indenter"])
     check_episodes(folder, tactile, first_s, last)
 
-    card = (folder / "README.md").read_text()
+    card = (folder / "README.md").read_text(encoding="utf-8")
     assert "`simulated`" in card and "By a test." in card and "Licence: to be filled in" in card
     with pytest.raises(twintac.Error, match="there already"):
         recording.save_lerobot(folder)
@@ -158,7 +158,7 @@ def check_episodes(
     assert list(episodes["length"]) == list(last + 1 - first)
     for name in ("data/chunk_index", "data/file_index", "meta/episodes/chunk_index", "meta/episodes/file_index"):
         assert set(episodes[name]) == {0}
-    stats = json.loads((folder / "meta/stats.json").read_text())["observation.tactile"]
+    stats = json.loads((folder / "meta/stats.json").read_text(encoding="utf-8"))["observation.tactile"]
     quantiles = {f"q{100 * part:02.0f}": part for part in (0.01, 0.1, 0.5, 0.9, 0.99)}
     exact = tactile.astype(float)
     for name, expected in {
@@ -181,6 +181,6 @@ def test_the_command_says_how_it_was_made(tmp_path: Path) -> None:
     ran = run_command("export", tmp_path / "data/presses.parquet", "--lerobot", tmp_path / "lerobot", "--json")
     assert ran.returncode == 0, ran.stderr
     assert json.loads(ran.stdout)["episodes"] == 12
-    assert 'readings = "ports"' in (tmp_path / "lerobot/README.md").read_text()
+    assert 'readings = "ports"' in (tmp_path / "lerobot/README.md").read_text(encoding="utf-8")
     again = run_command("export", tmp_path / "data/presses.parquet", "--lerobot", tmp_path / "lerobot")
     assert again.returncode == 2 and "there already" in again.stderr

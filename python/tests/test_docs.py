@@ -82,7 +82,7 @@ def blocks(page: str) -> list[Block]:
     return found
 
 
-WITH_BLOCKS = {str(path.relative_to(ROOT)): found for path in PAGES if (found := blocks(path.read_text()))}
+WITH_BLOCKS = {str(path.relative_to(ROOT)): found for path in PAGES if (found := blocks(path.read_text(encoding="utf-8")))}
 
 
 def commands(code: str) -> list[list[str]]:
@@ -121,13 +121,13 @@ def read_command(command: list[str]) -> None:
     elif program in ("python", "python3") and words[0] == "-m":
         assert importlib.util.find_spec(words[1]), said
     elif program in ("python", "python3"):
-        script = (ROOT / words[0]).read_text()
+        script = (ROOT / words[0]).read_text(encoding="utf-8")
         for word in words[1:]:
             assert not word.startswith("--") or f'"{word}"' in script, f"`{said}`: there is no {word}"
     elif program == "cargo":
         assert words[0] in ("doc", "run", "test", "xtask"), said
         if words[0] == "xtask":
-            assert all(f'"{word}"' in (ROOT / "xtask/src/main.rs").read_text() for word in words[1:2]), said
+            assert all(f'"{word}"' in (ROOT / "xtask/src/main.rs").read_text(encoding="utf-8") for word in words[1:2]), said
     elif program in ("cd", "hq", "sbatch") or program.startswith("python/"):
         files = [word for word in command if word.startswith("python/")]
         assert all((ROOT / file).exists() for file in files), said
@@ -138,7 +138,7 @@ def read_command(command: list[str]) -> None:
 def read_settings(block: Block, folder: Path) -> None:
     """Checks settings of a run with the program."""
     file = folder / f"settings-{block.line}.toml"
-    file.write_text(block.code)
+    file.write_text(block.code, encoding="utf-8")
     given = ["--sensor", ROOT / "sensors/phystac.toml", "--import", DATA / "import.toml", "--recordings", DATA / "presses.csv"]
     ran = run_command("import", *given, "--settings", file, "--out", folder / f"settings-{block.line}")
     assert ran.returncode == 0, ran.stderr
@@ -161,7 +161,7 @@ class Session:
             return printed.getvalue()
         environment = {**os.environ, "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}", "MPLBACKEND": "Agg"}
         command = ["bash", "-euo", "pipefail", "-c", block.code]
-        ran = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        ran = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, encoding="utf-8", check=False)
         assert ran.returncode == 0, f"{place}: {ran.stderr}"
         return ran.stdout
 
@@ -170,7 +170,7 @@ class Session:
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The result of `twintac demo`, which pages use."""
     folder = tmp_path_factory.mktemp("demo")
-    ran = subprocess.run([BIN / "twintac", "demo"], cwd=folder, capture_output=True, text=True, check=False)
+    ran = subprocess.run([BIN / "twintac", "demo"], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False)
     assert ran.returncode == 0, ran.stderr
     return folder / "runs/demo"
 
@@ -193,9 +193,9 @@ def test_page(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reques
         if block.is_file:
             assert any(block.title in later.code for later in found[index + 1 :]), f"{place}: nothing uses {block.title}"
             Path(block.title).parent.mkdir(parents=True, exist_ok=True)
-            Path(block.title).write_text(block.code)
+            Path(block.title).write_text(block.code, encoding="utf-8")
         elif block.language == "rust":
-            assert f"/{page}" in (ROOT / "crates/app/twintac/src/lib.rs").read_text(), f"{place}: no crate's documentation includes the page"
+            assert f"/{page}" in (ROOT / "crates/app/twintac/src/lib.rs").read_text(encoding="utf-8"), f"{place}: no crate's documentation includes the page"
         elif block.language == "text" and block.title:
             assert not re.search(r"^\s*(twintac|python3?|pip|cargo) ", block.code, re.MULTILINE), f"{place}: has a command"
         elif block.language == "text":
@@ -219,14 +219,14 @@ def test_snippets_that_are_not_run_have_no_wrong_names_and_types(tmp_path: Path)
     for page, found in WITH_BLOCKS.items():
         snippets = [block.code for block in found if block.language == "python"]
         if not all(block.is_run for block in found if block.language == "python"):
-            (tmp_path / f"{re.sub(r'[^a-z]', '_', page.lower())}.py").write_text("\n".join(snippets))
+            (tmp_path / f"{re.sub(r'[^a-z]', '_', page.lower())}.py").write_text("\n".join(snippets), encoding="utf-8")
     mypy = [sys.executable, "-m", "mypy", "--ignore-missing-imports", "--allow-redefinition", "--cache-dir", str(tmp_path / "cache"), str(tmp_path)]
-    ran = subprocess.run(mypy, cwd=tmp_path, capture_output=True, text=True, check=False)
+    ran = subprocess.run(mypy, cwd=tmp_path, capture_output=True, text=True, encoding="utf-8", check=False)
     assert ran.returncode == 0, ran.stdout
 
 
 def test_every_name_is_in_the_reference() -> None:
-    page = (ROOT / "docs/reference/python.md").read_text()
+    page = (ROOT / "docs/reference/python.md").read_text(encoding="utf-8")
     assert "`twintac.__version__`" in page
     assert [name for name in twintac.__all__ if name != "__version__" and f"::: twintac.{name}\n" not in page] == []
 

@@ -30,24 +30,24 @@ from twintac import (
 
 
 def test_a_wrong_field_has_its_file_and_line_and_the_text_of_the_command(tmp_path: Path) -> None:
-    text = (ROOT / "sensors/phystac.toml").read_text()
+    text = (ROOT / "sensors/phystac.toml").read_text(encoding="utf-8")
     wrong = tmp_path / "wrong.toml"
-    wrong.write_text(text.replace("port_radius_mm", "port_radius", 1))
+    wrong.write_text(text.replace("port_radius_mm", "port_radius", 1), encoding="utf-8")
     with pytest.raises(Error) as caught:
         Sensor.load(wrong)
     error = caught.value
     assert error.file == str(wrong)
-    assert error.line is not None and "port_radius" in wrong.read_text().splitlines()[error.line - 1]
+    assert error.line is not None and "port_radius" in wrong.read_text(encoding="utf-8").splitlines()[error.line - 1]
     assert error.field is not None and "taxels" in error.field
     assert run_command("sensor", "show", wrong).stderr == f"error: {error}\n"
     assert isinstance(error, ValueError)
 
 
 def test_a_wrong_cell_has_its_column(tmp_path: Path) -> None:
-    lines = (DATA / "presses.csv").read_text().splitlines()
+    lines = (DATA / "presses.csv").read_text(encoding="utf-8").splitlines()
     cells = lines[3].split(",")
     lines[3] = ",".join([cells[0], "x", *cells[2:]])
-    (tmp_path / "presses.csv").write_text("\n".join(lines))
+    (tmp_path / "presses.csv").write_text("\n".join(lines), encoding="utf-8")
     with pytest.raises(Error) as caught:
         Recording.import_csv(DATA / "import.toml", tmp_path / "presses.csv")
     assert caught.value.file == str(tmp_path / "presses.csv")

@@ -129,9 +129,9 @@ def test_a_press_that_cannot_be_leaves_the_gel_as_it_was(gel: Gel, touch: Pose) 
 
 
 def test_a_path_is_that_of_the_command(gel: Gel, tmp_path: Path) -> None:
-    (tmp_path / "path.toml").write_text(PATH)
+    (tmp_path / "path.toml").write_text(PATH, encoding="utf-8")
     settings = "\n".join(["[simulate]", *(f"{name} = {value}" for name, value in COARSE.items())])
-    (tmp_path / "settings.toml").write_text(settings)
+    (tmp_path / "settings.toml").write_text(settings, encoding="utf-8")
     files = ["--path", tmp_path / "path.toml", "--settings", tmp_path / "settings.toml"]
     said = run_command("simulate", "--sensor", ROOT / "sensors/phystac.toml", *files, "--json")
     assert said.returncode == 0, said.stderr
@@ -161,7 +161,7 @@ def test_a_path_of_arrays_is_that_of_a_file(gel: Gel, tmp_path: Path) -> None:
     upright = [0.0, 0.0, 0.0, 1.0]
     poses = [[-1.0, 0.0, 0.5, *upright], [-1.0, 0.0, -0.8, *upright], [1.0, 0.0, -0.8, *turned]]
     own = path(time_s=[0.0, 1.0, 2.0], gel_from_indenter=poses, rate_hz=5.0)
-    (tmp_path / "path.toml").write_text(PATH)
+    (tmp_path / "path.toml").write_text(PATH, encoding="utf-8")
     of_file = PressPath.load(tmp_path / "path.toml")
     assert own.time_s.tolist() == of_file.time_s.tolist() and own.indenter == "sphere-25"
     followed, expected = gel.follow(own), gel.follow(of_file)
@@ -200,14 +200,14 @@ def test_a_wrong_path_is_named(field: str, wrong: dict[str, object]) -> None:
 
 
 def test_a_wrong_file_of_a_path_has_its_line(tmp_path: Path) -> None:
-    (tmp_path / "path.toml").write_text(PATH.replace("rate_hz = 5.0", "rate_hz = -5.0"))
+    (tmp_path / "path.toml").write_text(PATH.replace("rate_hz = 5.0", "rate_hz = -5.0"), encoding="utf-8")
     with pytest.raises(Error) as caught:
         PressPath.load(tmp_path / "path.toml")
     assert (caught.value.line, caught.value.field) == (5, "rate_hz")
 
 
 def test_a_twin_along_a_path_reads_as_the_command_says(trained: Path, tmp_path: Path) -> None:
-    (tmp_path / "path.toml").write_text(PATH)
+    (tmp_path / "path.toml").write_text(PATH, encoding="utf-8")
     said = run_command("predict", "--model", trained / "model", "--path", tmp_path / "path.toml", "--json")
     expected = json.loads(said.stdout)["presses"][0]
     steps: list[tuple[str, int, int, str]] = []

@@ -93,7 +93,7 @@ import importlib.util
 importlib.util.find_spec = lambda name, package=None: None
 import twintac.gymnasium
 """
-    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, encoding="utf-8", check=False)
     assert ran.returncode == 1
     assert "twintac.gymnasium needs the package gymnasium: pip install gymnasium" in ran.stderr
 

@@ -46,7 +46,7 @@ def test_no_file_imports_itself_by_others() -> None:
     assert "twintac.gymnasium._vector" in files
     imports: dict[str, set[str]] = {}
     for name, file in files.items():
-        names = {found for own in imported(ast.parse(file.read_text())) for found in (own, own.rpartition(".")[0])}
+        names = {found for own in imported(ast.parse(file.read_text(encoding="utf-8"))) for found in (own, own.rpartition(".")[0])}
         # A name that `twintac/__init__.py` passes on is not an import of that file.
         front = {"twintac"} if name.startswith("twintac.") else set()
         imports[name] = {found for found in names - front - {name} if found in files}

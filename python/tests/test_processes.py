@@ -211,11 +211,11 @@ def test_a_sensor_with_a_surface_needs_no_file_after_a_pickle(tmp_path: Path) ->
     triangles = [(a, *pair) for a, b, c, d in faces for pair in ((b, c), (c, d))]
     vertices = ["".join(f"vertex {x} {y} {z}\n" for x, y, z in corners[list(triangle)]) for triangle in triangles]
     facets = "".join(f"facet normal 0 0 0\nouter loop\n{three}endloop\nendfacet\n" for three in vertices)
-    (tmp_path / "own.stl").write_text(f"solid own\n{facets}endsolid own\n")
-    text = Path(DATA.parents[4], "sensors/phystac.toml").read_text()
+    (tmp_path / "own.stl").write_text(f"solid own\n{facets}endsolid own\n", encoding="utf-8")
+    text = Path(DATA.parents[4], "sensors/phystac.toml").read_text(encoding="utf-8")
     text = re.sub(r'material = "\.\./', f'material = "{DATA.parents[4]}/', text)
     text += '\n[[indenters]]\nname = "own"\nshape = { kind = "stl", path = "own.stl" }\n'
-    (tmp_path / "own.toml").write_text(text)
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
     sensor = Sensor.load(tmp_path / "own.toml")
     kept = pickle.dumps(sensor)
     (tmp_path / "own.stl").unlink()
@@ -235,7 +235,7 @@ def test_a_twin_is_found_where_it_lies_or_said_to_be_another(trained: Path, tmp_
         assert figures(same) == figures(prediction)
     kept = pickle.dumps(twin)
     sums = tmp_path / "model/checksums.json"
-    sums.write_text(sums.read_text() + "\n")
+    sums.write_text(sums.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     with pytest.raises(Error, match="another one"):
         pickle.loads(kept)
 

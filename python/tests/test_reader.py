@@ -92,10 +92,10 @@ def test_zeros_are_compensated_for_temperature(tmp_path: Path) -> None:
     taxels = [f'{{ name = "{name}", kpa_per_k = 0.3, between_c = [20.0, 30.0], remaining_kpa = 0.01 }},' for name in Sensor.phystac().taxels]
     with Reader.emulated(Sensor.phystac()) as reader:
         assert abs(reader.warmer_k() or 0.0) < 1.0
-        file.write_text(TEMPERATURE + "\n".join(taxels) + "\n]\n")
+        file.write_text(TEMPERATURE + "\n".join(taxels) + "\n]\n", encoding="utf-8")
         reader.compensate(file)
         assert np.all(np.abs(reader.read().readings_kpa) < 200.0)
-        file.write_text(TEMPERATURE + "\n".join(taxels[1:]) + "\n]\n")
+        file.write_text(TEMPERATURE + "\n".join(taxels[1:]) + "\n]\n", encoding="utf-8")
         with pytest.raises(Error, match="no taxel `t0`"):
             reader.compensate(file)
         with pytest.raises(Error, match="nowhere"):

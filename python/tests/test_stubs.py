@@ -9,7 +9,7 @@ from twintac import _twintac
 
 
 def test_stubs_have_the_doc_strings_of_the_library() -> None:
-    stubs = STUBS.read_text()
+    stubs = STUBS.read_text(encoding="utf-8")
     assert documented(stubs) == stubs, "run python/tests/stubs.py"
 
 

@@ -83,14 +83,14 @@ def test_friction_holds_up_to_coulombs_limit() -> None:
 
 
 def test_a_press_is_that_of_the_command(tmp_path: Path) -> None:
-    (tmp_path / "protocol.toml").write_text(PROTOCOL)
+    (tmp_path / "protocol.toml").write_text(PROTOCOL, encoding="utf-8")
     settings = [f"{name} = {value}" for name, value in COARSE.items()]
-    (tmp_path / "settings.toml").write_text("\n".join(["[simulate]", *settings]))
+    (tmp_path / "settings.toml").write_text("\n".join(["[simulate]", *settings]), encoding="utf-8")
     files = ["--protocol", tmp_path / "protocol.toml", "--settings", tmp_path / "settings.toml"]
     sensor = ROOT / "sensors/phystac.toml"
     assert run_command("simulate", "--sensor", sensor, *files, "--out", tmp_path / "out").returncode == 0
     (table,) = (tmp_path / "out").glob("*.json")
-    frames = json.loads(table.read_text())["table"]["frames"]
+    frames = json.loads(table.read_text(encoding="utf-8"))["table"]["frames"]
     pressed = Gel(Sensor.load(sensor), COARSE).press(Press("sphere-25", at_mm=(1.0, 2.0), depth_mm=0.8))
     assert pressed.depth_mm.tolist() == [frame["depth_mm"] for frame in frames]
     assert pressed.force_n.tolist() == [frame["force_n"] for frame in frames]
@@ -123,12 +123,12 @@ def test_a_recording_is_its_parquet_file(tmp_path: Path) -> None:
 
 
 def test_an_import_says_what_it_left_out_and_guesses_a_description(tmp_path: Path) -> None:
-    lines = (DATA / "presses.csv").read_text().splitlines()
+    lines = (DATA / "presses.csv").read_text(encoding="utf-8").splitlines()
     cells = lines[100].split(",")
     taxel = lines[0].split(",").index("t4_kpa")
     cells[taxel] = "NaN"
     lines[100] = ",".join(cells)
-    (tmp_path / "presses.csv").write_text("\n".join(lines))
+    (tmp_path / "presses.csv").write_text("\n".join(lines), encoding="utf-8")
     recording = Recording.import_csv(DATA / "import.toml", tmp_path / "presses.csv")
     (file,) = recording.imported
     assert (file["file"], file["presses"], file["missing_readings"]) == ("presses.csv", len(recording), 1)
@@ -138,7 +138,7 @@ def test_an_import_says_what_it_left_out_and_guesses_a_description(tmp_path: Pat
     recording.save(tmp_path / "presses.parquet")
     assert Recording.load(tmp_path / "presses.parquet").imported == []
     guessed = Recording.guess_import(DATA / "presses.csv")
-    (tmp_path / "guessed.toml").write_text(guessed)
+    (tmp_path / "guessed.toml").write_text(guessed, encoding="utf-8")
     assert len(Recording.import_csv(tmp_path / "guessed.toml", DATA / "presses.csv")) == len(recording)
     with pytest.raises(Error, match="no rows of numbers"):
         Recording.guess_import(DATA / "import.toml")
@@ -157,13 +157,13 @@ def test_characterization_is_that_of_the_command(trained: Path, tmp_path: Path) 
 
 def test_metrics_are_those_of_the_file_and_of_the_command(trained: Path) -> None:
     metrics = Run.open(trained).finish(progress=False)
-    assert metrics == json.loads((trained / "metrics.json").read_text())
+    assert metrics == json.loads((trained / "metrics.json").read_text(encoding="utf-8"))
     assert metrics == json.loads(run_command("evaluate", "--run", trained, "--json").stdout)
     assert metrics["provenance"] == "emulated"
 
 
 def test_a_prediction_is_that_of_the_command(trained: Path, tmp_path: Path) -> None:
-    (tmp_path / "protocol.toml").write_text(PROTOCOL)
+    (tmp_path / "protocol.toml").write_text(PROTOCOL, encoding="utf-8")
     said = run_command("predict", "--model", trained / "model", "--protocol", tmp_path / "protocol.toml", "--json")
     expected = json.loads(said.stdout)["presses"][0]
     twin = Twin.load(trained / "model")
@@ -331,7 +331,7 @@ def test_a_surface_presses_as_the_box_that_it_is(tmp_path: Path) -> None:
         for triangle in ((a, b, c), (a, c, d)):
             vertices = "".join(f"vertex {x} {y} {z}\n" for x, y, z in corners[list(triangle)])
             lines.append(f"facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet")
-    (tmp_path / "box.stl").write_text("\n".join([*lines, "endsolid box"]))
+    (tmp_path / "box.stl").write_text("\n".join([*lines, "endsolid box"]), encoding="utf-8")
     surface, box = Shape.stl(tmp_path / "box.stl"), Shape.box([8.0, 8.0, 8.0], 0.0)
     whole = Shape.union([(surface, Pose((0.0, 0.0, 0.0)))])
     tenth = Shape.stl(tmp_path / "box.stl", scale=0.1)

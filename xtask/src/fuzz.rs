@@ -353,8 +353,8 @@ fn record(root: &Path, options: &Options, outcomes: &[Outcome], all: &[String]) 
          (`crates/app/fuzz`): what decodes encodes again, nothing grows beyond its bound, nothing panics. libFuzzer looks for inputs that \
          reach new code; an input may take {TIME_OUT_S} s, and allocate 16 MiB at once and 64 MiB in all. Edges are branches \
          of the compiled code that inputs reached, features those with how often.\n\n{table}\n\
-         Small inputs that reach these edges are in `fuzz/corpus`, and a test of `crates/app/fuzz` runs them without a fuzzer. It takes a \
-         C++ compiler (`apt-get install g++`), and no nightly Rust; who has cargo-fuzz can say `cargo fuzz run --sanitizer none <target>`.\n"
+         Small inputs that reach these edges are in `fuzz/corpus`, and a test of `crates/app/fuzz` runs them without a fuzzer. \
+         Fuzzing needs a C++ compiler (`apt-get install g++`), but no nightly Rust. With cargo-fuzz: `cargo fuzz run --sanitizer none <target>`.\n"
     );
     for (name, text) in [("fuzz.json", figures + "\n"), ("fuzz.md", page)] {
         let path = results.join(name);

@@ -15,7 +15,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | c
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | hardware [--sensor FILE [--chip NAME]] [--out DIR] [--release] | web | verify [rung…] [--quick] [--json] [--ccx CASE] [--finer CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
-  package every crate that can be published, without building it again; nothing may be uncommitted
+  package every Rust crate of the workspace, without building it again; nothing may be uncommitted
   test   every test, optimised
   readme the commands of README.md in blocks that are tagged `sh`, word for word; those of `cargo test` last; the book's are run by python/tests/test_docs.py
   crates  writes the tables of ARCHITECTURE.md and docs/reference/crates.md from xtask/crates.toml

@@ -24,7 +24,7 @@ pub(super) fn since(root: &Path, commit: &str, inputs: &[String], named: &[Strin
     let mut changed = Vec::new();
     for file in git(root, &arguments)?.lines() {
         let is_named = named.iter().any(|path| Path::new(file).starts_with(path));
-        if !is_named && is_beside(file) || file.ends_with(".md") {
+        if !is_named && is_beside(file) || is_document(file) {
             continue;
         }
         let before = git(root, &["show", &format!("{commit}:{file}")]).ok();
@@ -44,6 +44,11 @@ pub(super) fn since(root: &Path, commit: &str, inputs: &[String], named: &[Strin
 fn is_beside(file: &str) -> bool {
     let mut parts = file.split('/');
     parts.any(|part| BESIDE.contains(&part) || part == "tests.rs")
+}
+
+fn is_document(file: &str) -> bool {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.ends_with(".md") || name.starts_with("LICENSE-")
 }
 
 /// What a file says to a program.
@@ -79,6 +84,8 @@ mod tests {
             ("code/src/lib.rs", "/// Two.\npub fn two() -> u32 {\n    2\n}\n"),
             ("code/tests/t.rs", "#[test]\nfn t() {}\n"),
             ("code/table.toml", "a = 1 # one\n"),
+            ("code/README.md", "Two.\n"),
+            ("code/LICENSE-MIT", "A text.\n"),
         ] {
             let path = root.join(file);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -106,6 +113,7 @@ mod tests {
         fs::write(root.join("code/tests/t.rs"), "#[test]\nfn other() {}\n").unwrap();
         fs::write(root.join("code/table.toml"), "# One.\na = 1\n").unwrap();
         fs::write(root.join("code/README.md"), "All.\n").unwrap();
+        fs::write(root.join("code/LICENSE-MIT"), "Another text.\n").unwrap();
         assert_eq!(changed(root, &commit), Vec::<String>::new());
     }
 

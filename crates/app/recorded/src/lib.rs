@@ -1,5 +1,5 @@
-//! Recordings and logs of a bench, in use: characterization of a sensor, and export of frames to
-//! other formats.
+//! Recordings and logs of a test setup, in use: characterization of a sensor, and export of frames
+//! to other formats.
 //!
 //! - [`Recorded`] reads Parquet recordings, MCAP logs and, through an import description, tables of
 //!   other laboratories. [`Recorded::characterize`] computes what the sensor does (noise, drift,

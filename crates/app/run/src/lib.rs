@@ -2,7 +2,7 @@
 //! its report.
 //!
 //! Input: a sensor's description, recordings of presses (CSV files of any laboratory, logs of a
-//! bench, or an emulated bench), [`RunSettings`] and a seed. Output: a folder with a model,
+//! test setup, or an emulated one), [`RunSettings`] and a seed. Output: a folder with a model,
 //! `metrics.json` ([`Metrics`]: errors in % of the largest reading) and `report.html`. [`Run`] is
 //! the main type; [`Run::cross_validate`] repeats training and evaluation for several seeds and
 //! ways to hold presses out, and [`adaptation_curve`] measures how few presses suffice to adapt a
@@ -34,7 +34,7 @@
 //! ```text
 //! run.json       inputs of the run, and its settings
 //! sensor.toml    the sensor's description at the start (surface files beside it)
-//! logs/          of a bench: one log for each press (MCAP)
+//! logs/          of a test setup: one log for each press (MCAP)
 //! lab/           of the emulated bench: what its gel answers at the locations of the presses
 //! recordings/    presses.parquet, summary.json
 //! mesh/          the gel's mesh for ParaView and Gmsh, quality.json
@@ -55,7 +55,7 @@
 //!    the logs.
 //! 2. `mesh` ([`Run::mesh`]): the gel at rest, for people to look at.
 //! 3. `simulation` ([`Run::simulate`]): divides the presses into training, validation and test
-//!    presses, fits the unknowns of the bench (setup calibration) to training and validation
+//!    presses, fits the unknowns of the test setup (setup calibration) to training and validation
 //!    presses, and solves a table over depth for each location.
 //! 4. `pairs` ([`Run::pair`]): puts measured and simulated frames on one clock.
 //! 5. `training` ([`Run::train`]): trains every variant of the twin without the test presses; the

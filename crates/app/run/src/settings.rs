@@ -45,7 +45,7 @@ pub struct RunSettings {
     pub temperature: Option<Compensation>,
     /// Depths to which locations are simulated.
     pub places: PlaceSettings,
-    /// Setup calibration: which unknowns of the bench are fitted.
+    /// Setup calibration: which unknowns of the test setup are fitted.
     pub bench: BenchSettings,
     /// Division into training, validation and test presses.
     pub split: SplitSettings,

@@ -25,7 +25,7 @@
 //!
 //! With `own_indenters` all presses use the sensor's own indenters, upright and near its ports, and
 //! there are no sliding and no out-of-distribution presses: such a surrogate serves the twin of one
-//! bench.
+//! test setup.
 //!
 //! The crate reads no environment variable and no argument, prints nothing, and does not depend on
 //! `crates/app/run`.

@@ -207,7 +207,8 @@
 //!
 //! # Limits
 //!
-//! Twins have been trained on recordings of three real sensors, made by others. No PhysTac has been
+//! Twins have been trained on recordings of three real strips and two castings of an array, made by
+//! others. No PhysTac has been
 //! built yet, and the drivers have not been tested on hardware: figures of PhysTac are `emulated`
 //! or `simulated`. Sensors with cameras under gel are out of scope.
 //!

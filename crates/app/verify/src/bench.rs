@@ -148,7 +148,7 @@ fn page(cases: &[Timed]) -> Result<String> {
          longer than a frame lasts, {BUDGET_MS:.1} ms. Errors are the largest of all frames, beside the same \
          mesh solved to a residual of {TIGHT:e}. All figures are `simulated`.\n\n\
          | press | nodes | ν | real-time factor | mean, ms | worst, ms | in time | force error | pressure error | \
-         whole system factorized for every direction, times as long |\n\
+         time with the direct solver, relative to this one |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
     );
     for timed in cases {
@@ -169,7 +169,7 @@ fn page(cases: &[Timed]) -> Result<String> {
     }
     write!(
         text,
-        "\nWith a deadline of {DEADLINE} times the mean for each frame, which then ends converged or not:\n\n\
+        "\nIn the next table each frame has a deadline of {DEADLINE} times the mean. It ends at the deadline, converged or not.\n\n\
          | press | ν | deadline, ms | converged | worst, ms | force error | pressure error | largest residual | \
          farthest behind the path, mm |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|\n"

@@ -3,8 +3,8 @@
 //! A log is an MCAP file with ROS 2 messages, which Foxglove, Rerun and `ros2 bag` open. It holds
 //! tactile frames (counts, and pressures in Pa), wrenches (N and N mm), robot poses (mm) and
 //! events. Each message has a time of the bench clock, beside the time of its source's own clock.
-//! The file is flushed at least every second: a log that ended with a power cut can be read up to
-//! the last flush, and [`recover`] completes it.
+//! The file is flushed at least every half second: a log that ended with a power cut can be read up
+//! to the last flush, and [`recover`] completes it.
 //!
 //! - [`Recorder`] writes a log on a separate thread.
 //! - [`LogReader`] reads a log as an iterator over [`Message`]s.

@@ -104,7 +104,7 @@ fn page(asked: Option<&Path>) -> Result<Vec<u8>> {
         (None, Some(page)) => return Ok(page.to_vec()),
         (None, None) if Path::new(MADE).exists() => Path::new(MADE),
         (None, None) => bail!(
-            "this program was built without the page, and {MADE} does not exist: make it with `cargo xtask web`, or name one with --page"
+            "this program was built without the page, and {MADE} does not exist: make it with `cargo xtask web` in a checkout, or name that of the release with --page"
         ),
     };
     let page = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;

@@ -126,7 +126,7 @@ mod tests {
             version: "1.2".into(),
             script: String::new(),
             setting: "fast".into(),
-            mesh: "ours".into(),
+            mesh: "TwinTac's".into(),
             poissons_ratio: 0.45,
             parameters: Map::from_iter([("iterations".into(), json!(3))]),
             limit_s: 60.0,
@@ -155,7 +155,7 @@ mod tests {
         let figures = Figures::parse(&PRINTED.replace('\n', " ")).unwrap();
         let page = markdown(&results(vec![Row::measured(&run(), figures, Some(80.0))]));
         assert!(
-            page.contains("| Engine 1.2 | fast | ours | 8050 / 33660 | 0.0470 | 21.1 | +10.0 % / +0.0 % / –, cut at 1.17 mm | 0.232 / 0.711 | 12.0 (80) | 343 |"),
+            page.contains("| Engine 1.2 | fast | TwinTac's | 8050 / 33660 | 0.0470 | 21.1 | +10.0 % / +0.0 % / –, cut at 1.17 mm | 0.232 / 0.711 | 12.0 (80) | 343 |"),
             "{page}"
         );
         assert!(page.contains("- Engine, fast: `iterations` 3"), "{page}");

@@ -88,7 +88,7 @@ impl Plan {
                     let mesh = match mesh {
                         Mesh::Ours => {
                             parameters.insert("mesh_file".into(), json!(mesh_file));
-                            "ours".to_owned()
+                            "TwinTac's".to_owned()
                         }
                         Mesh::Regular(cells) => {
                             parameters.insert("cells".into(), json!(cells));

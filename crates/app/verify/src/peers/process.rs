@@ -88,7 +88,7 @@ pub(super) fn ours(work: &Path, poissons_ratio: f64) -> Row {
         version: env!("CARGO_PKG_VERSION").into(),
         script: String::new(),
         setting: "real time".into(),
-        mesh: "ours".into(),
+        mesh: "TwinTac's".into(),
         poissons_ratio,
         parameters: Map::new(),
         limit_s: START_UP_S,

@@ -11,9 +11,9 @@ pub(super) fn markdown(results: &Results) -> String {
         "# Recording on the emulated bench\n\n\
          `{}` made this page ({} data): `twintac record --lab` presses twice with a 25 mm ball over loopback sockets and an I²C bus that is emulated\n\
          down to its registers and its 400 kHz, in real time.\n\n\
-         Without faults: {} frames of eight taxels at **{:.1} Hz**, {} lost without a mark in the log.\n\n\
+         Without faults: {} frames of eight taxels at **{:.1} Hz**; {} lost frames are not marked in the log.\n\n\
          ## Faults\n\n\
-         Each fault begins during a hold. The column *lost* counts readings that the log lacks without a marked gap, found by reading the log again.\n\
+         Each fault begins during a hold. The column *lost* counts lost readings that no gap in the log marks; the log is read again to find them.\n\
          The latency of the stop is the time from the arrival of its cause, or from the end of the longest allowed silence, in servo periods of 8 ms.\n\n\
          | fault | outcome | gaps marked | lost | stop latency, periods |\n|---|---|---|---|---|\n",
         results.command, results.provenance, whole.frames, whole.rate_hz, whole.lost_unmarked
