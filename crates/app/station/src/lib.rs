@@ -1,5 +1,5 @@
-//! Connects the devices of a test setup (tactile sensor, robot arm, force sensor), real or emulated,
-//! and carries presses out on them.
+//! Connects the devices of a test setup (tactile sensor, robot arm, force sensor), real or
+//! emulated, and carries presses out on them.
 //!
 //! [`OpenBench`] is a bench that is switched on: [`OpenBench::connect`] connects real devices,
 //! [`OpenBench::emulate`] starts emulated ones on the same protocols. [`OpenBench::press`] carries

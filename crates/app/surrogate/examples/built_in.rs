@@ -1,5 +1,5 @@
-//! Compares the built-in surrogate of PhysTac with the FEM solution of this version's solver, on the
-//! test presses that the surrogate was evaluated on when it was trained:
+//! Compares the built-in surrogate of PhysTac with the FEM solution of this version's solver, on
+//! the test presses that the surrogate was evaluated on when it was trained:
 //! `cargo run --release -p twintac-surrogate --example built_in [PRESSES [SLIDES]]`.
 //!
 //! Writes docs/results/built-in.json. 70 presses and 24 slides take minutes on two cores.
