@@ -130,8 +130,8 @@ def fields(path: str, name: str) -> str:
     meaning: list[str] = []
     attributes = ""
     is_enum = found[1] == "enum"
-    of_all = re.search(r"(?:^#\[.*\]\n)*\Z", source[: found.start()], flags=re.M)
-    all_optional = bool(of_all) and bool(re.search(r"#\[serde\([^\]]*\bdefault\b", of_all[0]))
+    container = re.findall(r"(?:^#\[.*\]\n)*\Z", source[: found.start()], flags=re.M)[0]
+    all_optional = re.search(r"#\[serde\([^\]]*\bdefault\b", container) is not None
     for line in map(str.strip, found[2].splitlines()):
         field = re.fullmatch(r"(?:pub(?:\(crate\))? )?(\w+): (.+),", line)
         variant = re.fullmatch(r"(\w+)(?: \{|\((\w+)\),|,)", line)
