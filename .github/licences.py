@@ -25,6 +25,7 @@ ACCEPTED = {
     "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "CC0-1.0", "ISC",
     "MIT", "MIT-0", "MPL-2.0", "OFL-1.1", "Ubuntu-font-1.0", "Unicode-3.0", "Unlicense", "Zlib",
 }
+LICENCE_FILE = re.compile(r"(licen[cs]es?|copying|notices?|ufl|ofl)([-_. ].*)?(?<!\.rs)", re.IGNORECASE)
 
 
 def packages(manifest: Path) -> list[dict[str, Any]]:
@@ -71,15 +72,9 @@ def document(all_packages: list[dict[str, Any]]) -> str:
 def texts(package: dict[str, Any]) -> list[str]:
     """The licence texts in a package, each once."""
     folder = Path(package["manifest_path"]).parent
-    found = [file for file in folder.rglob("*") if re.match(r"(?i)(licen[cs]e|copying|notice|ufl|ofl)", file.name)]
-    files = sorted(file for file in found if file.is_file() and file.suffix.lower() in {"", ".txt", ".md", *licence_suffixes(file)})
+    files = sorted(file for file in folder.rglob("*") if LICENCE_FILE.fullmatch(file.name) and file.is_file())
     read = [file.read_text(encoding="utf-8", errors="replace") for file in files]
     return list(dict.fromkeys("\n".join(line.rstrip() for line in text.strip().splitlines()) for text in read))
-
-
-def licence_suffixes(file: Path) -> set[str]:
-    """`LICENSE-APACHE-2.0` has a suffix that is none."""
-    return {file.suffix.lower()} if re.search(r"-\d+\.\d+$", file.name) else set()
 
 
 def main() -> int:
